@@ -1,0 +1,237 @@
+// gnomon: a headless ray tracer in Vulkan compute shaders, as a library.
+//
+// Three handles: a device (Vulkan, opened once), a scene (loaded once), a picture (what a render gives back). Everything
+// else is a parameter structure in which zero is the default, so that `struct gn_render_params p = {0};` is a good start.
+// Errors are values: a function that can fail takes a `struct gn_error *`, fills it with a status and one message for
+// people, and returns NULL or false. The library never exits, never prints, and keeps no global state; messages, progress
+// and cancellation go through the callbacks of `struct gn_host`. A handle is used by one thread at a time.
+//
+// Units: lengths are scene units, angles are degrees where the name ends in `_deg` and radians elsewhere, times are
+// milliseconds where the name ends in `_ms`. Pictures are row-major, top row first.
+#ifndef GNOMON_H
+#define GNOMON_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GN_VERSION_MAJOR 0
+#define GN_VERSION_MINOR 1
+#define GN_VERSION_PATCH 0
+
+// What came of a call. The values are the program's exit codes.
+enum gn_status {
+    GN_OK = 0,
+    GN_CHECK_FAILED = 1,   // a comparison was made and its answer is no
+    GN_USAGE = 2,          // an argument makes no sense
+    GN_SCENE = 3,          // the scene or one of its assets is at fault
+    GN_NO_DEVICE = 4,      // no suitable Vulkan device
+    GN_SHADER = 5,         // the driver refused a shader or a pipeline
+    GN_DEVICE_LOST = 6,    // the device was lost, or did not answer in time
+    GN_LIMIT = 7,          // a device limit or memory; the message names the buffer, its size and the limit
+    GN_IO = 8,             // reading or writing a file failed
+    GN_INTERNAL = 9,       // a fault of gnomon's own
+    GN_SKIPPED = 77,       // could not be tried here
+    GN_CANCELLED = 130,    // the progress callback asked to stop
+};
+
+struct gn_error {
+    enum gn_status status;
+    char message[2048];    // one message, UTF-8, no newline at its end; names file, line and column where there are any
+};
+
+// How a message is meant.
+enum gn_level { GN_LEVEL_WARNING, GN_LEVEL_INFO, GN_LEVEL_DEBUG };
+
+struct gn_progress {
+    const char *stage;     // what is being done: "scene", "bvh", "trace", …
+    double fraction;       // of this stage, 0 to 1
+    double seconds_left;   // of this stage, estimated; negative while unknown
+};
+
+// What the caller lends the library. Zero fields take the default in brackets.
+struct gn_host {
+    void *user;                                                             // passed to the callbacks
+    bool (*progress)(void *user, const struct gn_progress *progress);       // false cancels [never cancelled]
+    void (*message)(void *user, enum gn_level level, const char *text);     // [messages are dropped]
+    unsigned threads;                                                       // CPU threads [one for each core]
+};
+
+// ---------------------------------------------------------------------------------------------------------------- device
+
+struct gn_device;   // one Vulkan device, opened for compute
+
+struct gn_device_info {
+    uint32_t index;        // in the order the Vulkan loader gives
+    char name[256];
+    char type[16];         // "discrete", "integrated", "virtual", "cpu", "other"
+    char driver[256];      // name and version, for people
+    char api[16];          // "1.3.230"
+    char uuid[37];         // lower-case hexadecimal, 8-4-4-4-12
+    bool usable;           // has what gnomon needs
+    char reason[256];      // why not, if not
+    bool has_fp64, has_int64;
+};
+
+struct gn_device_params {
+    const char *select;    // index, part of the name, "uuid:…", "cpu" or "gpu" [a GPU if there is one, else the CPU]
+    bool validate;         // turn the Khronos validation layer on; its messages become errors [off]
+    const struct gn_host *host;
+};
+
+// Opens a device. Returns NULL and fills *error (GN_NO_DEVICE, GN_USAGE for a selector that names none) on failure.
+struct gn_device *gn_device_create(const struct gn_device_params *params, struct gn_error *error);
+
+// Closes a device; NULL is allowed. All its pictures stay valid: they live in host memory.
+void gn_device_destroy(struct gn_device *device);
+
+// What is known of an open device; valid until it is destroyed.
+const struct gn_device_info *gn_device_info(const struct gn_device *device);
+
+// Lists all Vulkan devices into infos[0 … *count), at most `capacity`; *selected is the index that `params` would
+// choose, or -1. Returns false only when Vulkan itself cannot be started.
+bool gn_device_list(const struct gn_device_params *params, struct gn_device_info *infos, uint32_t capacity,
+                    uint32_t *count, int *selected, struct gn_error *error);
+
+// ----------------------------------------------------------------------------------------------------------------- scene
+
+struct gn_scene;    // a scene in host memory
+
+// Loads a scene (.json, format version 1) or a model (.obj, .ply, .stl, .gltf, .glb, and what Assimp reads), checks it,
+// and resolves its files. A model without camera or light gets a framed camera and default lights. NULL and *error (GN_SCENE,
+// GN_IO, GN_LIMIT) on failure.
+struct gn_scene *gn_scene_load(const char *path, const struct gn_host *host, struct gn_error *error);
+
+// Frees a scene; NULL is allowed.
+void gn_scene_destroy(struct gn_scene *scene);
+
+struct gn_scene_info {
+    uint32_t shapes, materials, lights;
+    uint64_t triangles, spheres;
+    uint32_t width, height, spp;   // of the film, before any override
+};
+void gn_scene_info(const struct gn_scene *scene, struct gn_scene_info *info);
+
+// ---------------------------------------------------------------------------------------------------------------- render
+
+// How decisions are made. The default is the watertight tier.
+enum gn_accuracy { GN_ROBUST = 0, GN_FAST, GN_EXACT, GN_FP64, GN_ACCURACY_COUNT };
+
+// Extra layers of a picture, or-ed together.
+enum gn_aov {
+    GN_AOV_DEPTH = 1,      // distance along the ray from the camera, scene units; +inf where nothing is hit; 1 channel
+    GN_AOV_NORMAL = 2,     // unit shading normal in world space, towards the viewer; 0 where nothing is hit; 3 channels
+    GN_AOV_ID = 4,         // object and primitive of the first sample's hit, -1 for none; 2 channels
+};
+
+struct gn_time { double total, startup, scene, bvh, pipeline, trace, output; };   // milliseconds
+
+struct gn_render_params {
+    uint32_t width, height;         // pixels [the scene's]
+    uint32_t spp;                   // samples per pixel [the scene's]
+    uint32_t seed;                  // of the sampler
+    enum gn_accuracy accuracy;      // [robust]
+    uint32_t aovs;                  // enum gn_aov, or-ed
+    const char *disable;            // effects to leave out, comma-separated names [none]
+    bool no_prune;                  // run every effect, whether the scene calls for it or not
+    uint32_t tile_pixels;           // pixels of one piece of device work; the picture does not depend on it [measured]
+    const struct gn_host *host;
+};
+
+struct gn_render_stats {
+    char accuracy[16];
+    char effects[1024];             // names of the effects that ran, comma-separated
+    uint64_t rays;                  // all kinds
+    uint64_t nonfinite_pixels;      // samples that came out NaN or infinite and were dropped, counted by pixel
+    uint64_t undecided_rays;        // whose decision needed more than the tier's first stage
+    struct gn_time time_ms;         // `output` is filled by gn_picture_save
+    double mrays_per_s;             // rays / trace time
+};
+
+struct gn_picture;  // a finished picture in host memory, linear light, fp32
+
+// Renders. `device` NULL renders on the CPU in fp64 (the reference), with the same sample positions and random numbers.
+// NULL and *error (GN_USAGE, GN_SHADER, GN_DEVICE_LOST, GN_LIMIT, GN_CANCELLED) on failure.
+struct gn_picture *gn_render(struct gn_device *device, struct gn_scene *scene, const struct gn_render_params *params,
+                             struct gn_error *error);
+
+void gn_picture_destroy(struct gn_picture *picture);
+uint32_t gn_picture_width(const struct gn_picture *picture);
+uint32_t gn_picture_height(const struct gn_picture *picture);
+const struct gn_render_stats *gn_picture_stats(const struct gn_picture *picture);
+
+// The picture's layer `aov`, or with 0 its colour (3 channels, linear RGB); NULL if it was not asked for.
+// width × height × channels floats, row-major, top row first, channels interleaved.
+const float *gn_picture_pixels(const struct gn_picture *picture, uint32_t aov);
+
+// Writes the picture; the suffix says how: .png (8 bit, the film's transfer), .exr (linear, AOVs as layers), .pfm (linear).
+// For .png and .pfm every AOV goes to its own file beside it (name.depth.png, …). Either whole or not there.
+bool gn_picture_save(struct gn_picture *picture, const char *path, struct gn_error *error);
+
+// ----------------------------------------------------------------------------------------------------------------- trace
+
+struct gn_ray { float origin[3], tmin, direction[3], tmax; };      // open interval, t in units of the direction
+
+#define GN_HIT_INVALID   1u     // flag bit 0: the ray had a NaN, an infinity or no direction
+#define GN_HIT_UNDECIDED 2u     // flag bit 1: the decision needed more than the tier's first stage
+
+struct gn_hit {
+    float t, u, v;              // t is +inf for a miss; u and v weigh the triangle's second and third vertex
+    int32_t object, primitive;  // index in the scene's shapes, triangle in its mesh; both -1 for a miss
+    uint32_t flags;             // GN_HIT_*
+};
+
+struct gn_trace_params {
+    enum gn_accuracy accuracy;  // [robust]
+    bool any;                   // occlusion only: object is 0 for occluded, -1 for free; nothing else is meaningful
+    uint32_t repeat;            // shoot the batch so often, report the median time [1]
+    const struct gn_host *host;
+};
+
+struct gn_trace_stats {
+    char accuracy[16];
+    uint64_t rays, hits, undecided_rays;
+    struct gn_time time_ms;     // `trace` is the shooting alone
+    double mrays_per_s;
+};
+
+// Shoots rays[0 … count) and fills hits[0 … count). `device` NULL uses the CPU reference, whose decisions are exact.
+bool gn_trace(struct gn_device *device, struct gn_scene *scene, const struct gn_trace_params *params,
+              const struct gn_ray *rays, struct gn_hit *hits, size_t count, struct gn_trace_stats *stats,
+              struct gn_error *error);
+
+// --------------------------------------------------------------------------------------------------------------- measure
+
+struct gn_verify_result {
+    bool pass;
+    uint64_t pixels, pixels_differing, wrong_hits;
+    double max_abs, rmse;
+    uint32_t worst_x, worst_y;
+    double tolerance;               // a pixel differs when a channel is off by more than this
+    double allowed_fraction;        // of the pixels that may differ
+};
+
+// Renders with the device and with the reference, and compares pixel by pixel. On success *result is filled (pass or
+// not), and *difference, if asked for, receives a picture of the absolute difference.
+bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn_render_params *params,
+               struct gn_verify_result *result, struct gn_picture **difference, struct gn_error *error);
+
+struct gn_compare_result {
+    uint32_t width, height;
+    double max_abs, rmse, psnr_db, flip;    // psnr_db is +inf for equal images; flip is the mean FLIP error, 0 to 1
+    uint64_t pixels_differing, nonfinite_pixels;
+    uint32_t worst_x, worst_y;
+};
+
+// Compares two image files of the same size (.png, .exr, .pfm). *heat, if asked for, receives the FLIP error in false colour.
+bool gn_compare(const char *path_a, const char *path_b, struct gn_compare_result *result, struct gn_picture **heat,
+                struct gn_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,149 @@
+// What crosses between C and GLSL: lists, constants, layouts. Read by both, so only what both understand.
+//
+// Buffers are arrays of 16-byte words (uvec4 in GLSL, struct word4 in C); floats travel as their bits. What each word
+// holds is written here, once, and nowhere else.
+#ifndef GNOMON_SHARED_H
+#define GNOMON_SHARED_H
+
+// ------------------------------------------------------------------------------------------------------------- effects
+// What a scene may call for. Each row is a specialization constant (its number), a bit in C, a name on the command line, and what calls for it.
+#define EFFECTS(X)                                                                          \
+    X(0, TRIANGLES,      "triangles",      "a triangle or a mesh is in the scene")          \
+    X(1, SPHERES,        "spheres",        "a sphere is in the scene")                      \
+    X(2, BVH,            "bvh",            "more than a few primitives are in the scene")   \
+    X(3, SMOOTH_NORMALS, "smooth_normals", "a mesh has vertex normals")                     \
+    X(4, DIFFUSE,        "diffuse",        "a light and a material with a diffuse colour")  \
+    X(5, SPECULAR,       "specular",       "a light and a material with a specular colour") \
+    X(6, SHADOWS,        "shadows",        "a light, and a shape that can stand in its way") \
+    X(7, ANTIALIASING,   "antialiasing",   "more than one sample per pixel")
+
+#define EFFECT_COUNT 8
+
+// --------------------------------------------------------------------------------------------------------------- tiers
+// How decisions are made. Each row is a value of the specialization constant TIER, a name, and one GLSL file tier_<name>.glsl.
+#define TIERS(X)                                                                 \
+    X(0, FAST,   "fast",   "what a good plain renderer does")                    \
+    X(1, ROBUST, "robust", "watertight, error-bounded offsets, safe boxes")
+
+#define TIER_COUNT 2
+
+// Numbers of the specialization constants that are no effects.
+#define CONSTANT_TIER       32
+#define CONSTANT_AOVS       33      // GN_AOV_* bits
+#define CONSTANT_MAX_STEPS  34      // loop iterations an invocation may spend before it gives up
+#define CONSTANT_ANY_HIT    35      // trace kernel: occlusion only
+
+// ------------------------------------------------------------------------------------------------------------ bindings
+#define BINDING_NODES       0       // node words
+#define BINDING_TRIANGLES   1       // triangle words, in leaf order
+#define BINDING_SPHERES     2       // sphere words, in leaf order
+#define BINDING_OBJECTS     3       // object words, by object
+#define BINDING_MATERIALS   4       // material words, by material
+#define BINDING_LIGHTS      5       // light words
+#define BINDING_INDICES     6       // vertex numbers for normals: one word4 per triangle (three vertices, unused)
+#define BINDING_NORMALS     7       // vertex normals: one word4 per vertex (x, y, z, unused)
+#define BINDING_FILM        8       // rgba32f storage image: sum of samples r, g, b; samples done
+#define BINDING_RESIDUE     9       // rgba32f storage image: what Kahan summation still owes r, g, b; nonfinite samples
+#define BINDING_AOV_SHADE  10       // rgba32f storage image: sum of normal.xyz; sum of depth
+#define BINDING_AOV_ID     11       // rg32i storage image: object, primitive of sample 0
+#define BINDING_STATUS     12       // storage buffer: struct status
+#define BINDING_RAYS       13       // trace kernel: 2 word4 per ray (origin, tmin; direction, tmax)
+#define BINDING_HITS       14       // trace kernel: 6 words per ray, struct gn_hit
+
+// Node: 4 word4. A node holds the boxes of its two children and what they are.
+//   0: left min.xyz,  left ref      1: left max.xyz,  right ref
+//   2: right min.xyz, unused        3: right max.xyz, unused
+// A reference: an inner node's number; or a leaf: bit 31, bit 30 for spheres, bits 26–29 the count minus 1, bits 0–25 the first primitive;
+// or REF_NONE, a child that is not there (its box is empty).
+#define NODE_WORDS 4
+#define REF_LEAF 0x80000000u
+#define REF_SPHERES 0x40000000u
+#define REF_COUNT_SHIFT 26
+#define REF_FIRST_MASK 0x03ffffffu
+#define REF_NONE 0xffffffffu
+
+// Triangle: 3 word4:  v0.xyz, object    v1.xyz, primitive    v2.xyz, material
+#define TRIANGLE_WORDS 3
+// Sphere: 2 word4:  center.xyz, radius    object, material, 0, 0
+#define SPHERE_WORDS 2
+// Object: 1 word4:  first word of its triangles in INDICES or NO_NORMALS, 0, 0, 0
+#define OBJECT_WORDS 1
+#define NO_NORMALS 0xffffffffu
+// Material: 3 word4:  ambient.rgb, shininess    diffuse.rgb, 0    specular.rgb, 0
+#define MATERIAL_WORDS 3
+// Light: 2 word4:  position.xyz, falloff (0 none, 1 inverse square)    intensity.rgb, 0
+#define LIGHT_WORDS 2
+
+// Stack entries of a traversal: BVH_MAX_DEPTH + 2.
+#define STACK_SIZE 64
+
+// Invocations of a workgroup, and the square tile of pixels it renders.
+#define GROUP_SIZE 64
+#define TILE_SIDE 8
+
+// Flags of a hit, as in gnomon.h.
+#define HIT_INVALID 1u
+#define HIT_UNDECIDED 2u
+
+// ------------------------------------------------------------------------------------------------------ dialects of C and GLSL
+#ifdef GL_core_profile
+#define X(number, id, name, text) layout(constant_id = number) const bool HAS_##id = true;
+EFFECTS(X)
+#undef X
+#define X(number, id, name, text) const uint TIER_##id = number;
+TIERS(X)
+#undef X
+#else
+#include <stdint.h>
+struct word4 { uint32_t w[4]; };
+typedef struct { float x, y, z, w; } vec4;
+typedef uint32_t uint;
+enum {
+#define X(number, id, name, text) EFFECT_##id = 1 << number,
+    EFFECTS(X)
+#undef X
+#define X(number, id, name, text) TIER_##id = number,
+    TIERS(X)
+#undef X
+};
+#endif
+
+// ---------------------------------------------------------------------------------- push constants (128 bytes at most) and status
+// One dispatch of render.comp: some tiles of one band of rows of the film, up to some sample.
+struct render_args {
+    vec4 position;          // xyz of the camera; w: factor from scene units to device units, a power of two
+    vec4 corner;            // xyz, see render/camera.h; w: 1 / position.w
+    vec4 du, dv;            // xyz
+    uint width, height;     // of the whole film, pixels
+    uint band_y, band_rows; // the rows in the film images
+    uint first_tile;        // workgroup g renders tile (first_tile + g) · tile_stride mod tile_count of the band
+    uint tile_count, tile_stride;
+    uint sample_end;        // every pixel goes on from the samples it has to this many
+    uint spp, seed;
+    uint light_count;
+    uint root;              // reference of the root
+};
+
+// One dispatch of trace.comp.
+struct trace_args {
+    uint first, count;      // rays
+    uint root;              // reference of the root
+    float scale;            // factor from scene units to device units, a power of two
+};
+
+// What a dispatch reports; the host zeroes it before.
+struct status {
+    uint rays;              // shot, all kinds
+    uint hits;              // trace kernel: rays that hit
+    uint nonfinite;         // samples dropped
+    uint undecided;         // rays
+    uint unfinished;        // invocations that ran out of CONSTANT_MAX_STEPS with work left (they go on when dispatched again)
+    uint stuck;             // invocations that ran out without finishing one sample: an error
+};
+
+// Globals: 2 word4:  background.rgb, 0    ambient.rgb, 0
+#define GLOBAL_WORDS 2
+#define BINDING_GLOBALS 15
+#define BINDING_COUNT 16
+
+#endif

@@ -1,0 +1,63 @@
+// Buffers and storage images, each checked against the device's limits and memory before it is made.
+#ifndef DEVICE_MEMORY_H
+#define DEVICE_MEMORY_H
+
+#include "device/device.h"
+
+enum buffer_kind {
+    BUFFER_TEXELS,      // read-only uniform texel buffer, R32G32B32A32_UINT: the fastest way to read on software devices
+    BUFFER_STORAGE,     // storage buffer, read and written by kernels
+};
+
+// Zeroed is absent; buffer_finish accepts that.
+struct buffer {
+    VkBuffer handle;
+    VkDeviceMemory memory;
+    VkBufferView view;          // of texel buffers
+    VkDeviceSize size;          // bytes
+    void *map;                  // mapped host memory (coherent); NULL for device-local memory that the host cannot see
+    enum buffer_kind kind;
+    const char *name;           // for messages, e.g. "triangles"
+};
+
+struct buffer_params {
+    const char *name;           // for messages and debug labels
+    enum buffer_kind kind;
+    VkDeviceSize size;          // bytes; 0 becomes one word, so that a binding is never empty
+    bool host_writes;           // the host fills it once: mapped where device memory is host visible (write through `map`), else filled by buffer_upload
+    bool host_reads;            // mapped, cached if possible: small results, hits
+};
+
+// Fails with GN_LIMIT: "buffer 'triangles' needs 3.2 GB, the device allows 2.1 GB (maxTexelBufferElements)" or "… of memory, … is free".
+bool buffer_init(struct buffer *out, struct context *ctx, struct device *device, const struct buffer_params *params);
+void buffer_finish(struct buffer *buffer, struct device *device);
+
+// Fills a buffer in pieces: `fill` writes bytes [offset, offset + size) of the content to `to`. Where the buffer is mapped it is called on the
+// mapping, else on a staging buffer that is copied. `granularity` divides every offset.
+bool buffer_fill(struct buffer *buffer, struct context *ctx, struct device *device, size_t granularity,
+                 bool (*fill)(void *data, void *to, uint64_t offset, uint64_t size), void *data);
+// The same from plain memory, the whole size.
+bool buffer_upload(struct buffer *buffer, struct context *ctx, struct device *device, const void *from, size_t size);
+// Copies bytes [0, size) to the host.
+bool buffer_download(struct buffer *buffer, struct context *ctx, struct device *device, void *to, size_t size);
+
+// A 2D storage image in layout GENERAL, zeroed when made. Zeroed struct is absent.
+struct storage_image {
+    VkImage handle;
+    VkDeviceMemory memory;
+    VkImageView view;
+    VkFormat format;            // R32G32B32A32_SFLOAT or R32G32_SINT
+    uint32_t width, height;
+    VkDeviceSize bytes;
+    const char *name;
+};
+
+bool storage_image_init(struct storage_image *out, struct context *ctx, struct device *device, const char *name,
+                        VkFormat format, uint32_t width, uint32_t height);
+void storage_image_finish(struct storage_image *image, struct device *device);
+// Zeroes it again.
+bool storage_image_clear(struct storage_image *image, struct context *ctx, struct device *device);
+// Reads rows [0, rows) back, tightly packed.
+bool storage_image_download(struct storage_image *image, struct context *ctx, struct device *device, uint32_t rows, void *to);
+
+#endif

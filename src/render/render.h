@@ -1,0 +1,45 @@
+// The hinge and the passes: scene + plan + BVH become the arrays of shared.h on a device; kernels run over them in pieces; the film comes back.
+#ifndef RENDER_RENDER_H
+#define RENDER_RENDER_H
+
+#include "base/image.h"
+#include "bvh/bvh.h"
+#include "device/device.h"
+#include "effects/plan.h"
+#include "scene/scene.h"
+
+struct render_params {
+    uint32_t width, height, spp, seed;
+    uint32_t tier;                  // TIER_*
+    uint32_t effects;               // EFFECT_* bits that run
+    uint32_t aovs;                  // GN_AOV_* bits
+    uint32_t tile_pixels;           // pixels of a piece of work; 0: measured
+};
+
+// As reference_film, plus what the device did.
+struct render_film {
+    struct image color, depth, normal, id;
+    uint64_t rays, nonfinite_pixels, undecided_rays;
+    double pipeline_ms, upload_ms, trace_ms;
+};
+
+bool render_picture(struct render_film *out, struct context *ctx, struct device *device, const struct scene *scene, const struct bvh *bvh,
+                    const struct render_params *params);
+void render_film_finish(struct render_film *film);
+
+struct render_trace_params {
+    uint32_t tier;
+    uint32_t effects;
+    bool any;
+    uint32_t repeat;                // at least 1
+};
+
+struct render_trace_stats {
+    uint64_t hits, undecided_rays;
+    double pipeline_ms, upload_ms, trace_ms;    // trace: median over the repeats
+};
+
+bool render_trace(struct gn_hit *hits, struct render_trace_stats *stats, struct context *ctx, struct device *device, const struct scene *scene,
+                  const struct bvh *bvh, const struct render_trace_params *params, const struct gn_ray *rays, size_t count);
+
+#endif
