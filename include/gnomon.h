@@ -18,10 +18,16 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 #define GN_VERSION_MAJOR 0
 #define GN_VERSION_MINOR 1
 #define GN_VERSION_PATCH 0
+
+// The version of the library that is linked, "major.minor.patch".
+const char *gn_version(void);
 
 // What came of a call. The values are the program's exit codes.
 enum gn_status {
@@ -128,7 +134,9 @@ enum gn_aov {
     GN_AOV_ID = 4,         // object and primitive of the first sample's hit, -1 for none; 2 channels
 };
 
-struct gn_time { double total, startup, scene, bvh, pipeline, trace, output; };   // milliseconds
+// Milliseconds. startup: opening the device; pipeline: making kernels; upload: filling the device's memory; total: all of these and what lies
+// between them, from gn_render's or gn_trace's point of view.
+struct gn_time { double total, startup, scene, bvh, pipeline, upload, trace, output; };
 
 struct gn_render_params {
     uint32_t width, height;         // pixels [the scene's]
@@ -154,11 +162,24 @@ struct gn_render_stats {
 
 struct gn_picture;  // a finished picture in host memory, linear light, fp32
 
+// One effect, and whether a scene calls for it.
+struct gn_effect {
+    char name[32];
+    bool on;                        // it runs; else it is pruned
+    char because[160];              // why, for people
+};
+
+// Says what gn_render would run with the same scene and parameters: fills effects[0 … *count), at most `capacity`; all there
+// are when `capacity` is 64. GN_USAGE when `disable` names no effect.
+bool gn_plan(struct gn_scene *scene, const struct gn_render_params *params, struct gn_effect *effects, uint32_t capacity,
+             uint32_t *count, struct gn_error *error);
+
 // Renders. `device` NULL renders on the CPU in fp64 (the reference), with the same sample positions and random numbers.
 // NULL and *error (GN_USAGE, GN_SHADER, GN_DEVICE_LOST, GN_LIMIT, GN_CANCELLED) on failure.
 struct gn_picture *gn_render(struct gn_device *device, struct gn_scene *scene, const struct gn_render_params *params,
                              struct gn_error *error);
 
+// Frees a picture; NULL is allowed.
 void gn_picture_destroy(struct gn_picture *picture);
 uint32_t gn_picture_width(const struct gn_picture *picture);
 uint32_t gn_picture_height(const struct gn_picture *picture);
@@ -206,18 +227,27 @@ bool gn_trace(struct gn_device *device, struct gn_scene *scene, const struct gn_
 
 // --------------------------------------------------------------------------------------------------------------- measure
 
-struct gn_verify_result {
-    bool pass;
-    uint64_t pixels, pixels_differing, wrong_hits;
-    double max_abs, rmse;
-    uint32_t worst_x, worst_y;
-    double tolerance;               // a pixel differs when a channel is off by more than this
-    double allowed_fraction;        // of the pixels that may differ
+struct gn_verify_params {
+    struct gn_render_params render; // what is rendered, on both sides
+    double tolerance;               // of a colour channel, in linear light [1/255]
 };
 
-// Renders with the device and with the reference, and compares pixel by pixel. On success *result is filled (pass or
-// not), and *difference, if asked for, receives a picture of the absolute difference.
-bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn_render_params *params,
+struct gn_verify_result {
+    bool pass;
+    uint64_t pixels;
+    uint64_t pixels_differing;      // a colour channel is off by more than the tolerance
+    uint64_t wrong_hits;            // the first sample hit another object or primitive
+    uint64_t nonfinite_pixels;      // of the device; one is enough to fail
+    uint64_t pixels_allowed;        // that may differ, and of wrong hits: rounding may decide otherwise at an edge
+    double tolerance;
+    double max_abs, rmse;           // over all colour channels
+    uint32_t worst_x, worst_y;      // where max_abs is
+    struct gn_render_stats device, reference;
+};
+
+// Renders with the device and with the reference, and compares pixel by pixel. On success *result is filled, pass or
+// not, and *difference, if asked for, receives the difference in false colour: the middle of the scale is the tolerance, its end twice that.
+bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn_verify_params *params,
                struct gn_verify_result *result, struct gn_picture **difference, struct gn_error *error);
 
 struct gn_compare_result {
@@ -227,10 +257,13 @@ struct gn_compare_result {
     uint32_t worst_x, worst_y;
 };
 
-// Compares two image files of the same size (.png, .exr, .pfm). *heat, if asked for, receives the FLIP error in false colour.
+// Compares two image files of the same size (.png, .exr, .pfm); a pixel differs when it is not equal. *heat, if asked for, receives the FLIP error in false colour.
 bool gn_compare(const char *path_a, const char *path_b, struct gn_compare_result *result, struct gn_picture **heat,
                 struct gn_error *error);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif
