@@ -45,10 +45,12 @@
 #define BINDING_FILM        8       // rgba32f storage image: sum of samples r, g, b; samples done
 #define BINDING_RESIDUE     9       // rgba32f storage image: what Kahan summation still owes r, g, b; nonfinite samples
 #define BINDING_AOV_SHADE  10       // rgba32f storage image: sum of normal.xyz; sum of depth
-#define BINDING_AOV_ID     11       // rg32i storage image: object, primitive of sample 0
+#define BINDING_AOV_ID     11       // rgba32i storage image: object, primitive of sample 0; samples that hit; unused
 #define BINDING_STATUS     12       // storage buffer: struct status
 #define BINDING_RAYS       13       // trace kernel: 2 word4 per ray (origin, tmin; direction, tmax)
-#define BINDING_HITS       14       // trace kernel: 6 words per ray, struct gn_hit
+#define BINDING_HITS       14       // trace kernel: storage buffer, 6 words per ray, struct gn_hit
+#define BINDING_GLOBALS    15       // global words
+#define BINDING_COUNT      16
 
 // Node: 4 word4. A node holds the boxes of its two children and what they are.
 //   0: left min.xyz,  left ref      1: left max.xyz,  right ref
@@ -72,7 +74,10 @@
 // Material: 3 word4:  ambient.rgb, shininess    diffuse.rgb, 0    specular.rgb, 0
 #define MATERIAL_WORDS 3
 // Light: 2 word4:  position.xyz, falloff (0 none, 1 inverse square)    intensity.rgb, 0
+// Positions are in device units, intensities as the scene has them.
 #define LIGHT_WORDS 2
+// Globals: 2 word4:  background.rgb, 0    ambient.rgb, 0
+#define GLOBAL_WORDS 2
 
 // Stack entries of a traversal: BVH_MAX_DEPTH + 2.
 #define STACK_SIZE 64
@@ -140,10 +145,5 @@ struct status {
     uint unfinished;        // invocations that ran out of CONSTANT_MAX_STEPS with work left (they go on when dispatched again)
     uint stuck;             // invocations that ran out without finishing one sample: an error
 };
-
-// Globals: 2 word4:  background.rgb, 0    ambient.rgb, 0
-#define GLOBAL_WORDS 2
-#define BINDING_GLOBALS 15
-#define BINDING_COUNT 16
 
 #endif

@@ -1,0 +1,55 @@
+// A ray and what it hits, in device units.
+//
+// A ray is brought to a safe scale when it is made: its direction is multiplied by the power of two that brings the largest component into
+// [1, 2). That is exact, and keeps products of a predicate away from overflow and underflow, whatever the caller's units.
+#ifndef RAY_GLSL
+#define RAY_GLSL
+#include "shared.h"
+
+// The primitive that a ray leaves: it is not hit again where it starts. SELF_NONE for rays from nowhere.
+#define SELF_NONE 0xffffffffu
+#define SELF_SPHERE 0x80000000u     // or-ed to the number of a sphere; else a triangle's
+
+struct ray {
+    vec3 o;
+    vec3 d;             // largest component in [1, 2)
+    float tmin, tmax;   // open interval, in units of d
+    float t_scale;      // multiply t by this to have it in units of the direction that was given
+    uint self;
+};
+
+struct hit {
+    float t, u, v;      // +inf, 0, 0 for a miss; t in units of the ray's d
+    uint primitive;     // SELF_NONE for a miss; else as `self` above: number in leaf order
+    int object, index;  // object, and the primitive's number in it; -1 for a miss
+};
+
+#define INFINITY uintBitsToFloat(0x7f800000u)
+
+hit hit_none() { return hit(INFINITY, 0.0, 0.0, SELF_NONE, -1, -1); }
+
+bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+bool is_finite(vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+
+// 2^exponent for -126 <= exponent <= 127.
+float power_of_two(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
+
+// Exponent of |x|, x normal: 2^e <= |x| < 2^(e+1). Zero and denormals give -127.
+int exponent_of(float x) { return int((floatBitsToUint(x) >> 23) & 0xffu) - 127; }
+
+// A ray through o (device units) along d (any scale, not zero, finite), for t in units of d as given.
+ray ray_make(vec3 o, vec3 d, float tmin, float tmax, uint self) {
+    float largest = max(abs(d.x), max(abs(d.y), abs(d.z)));
+    float lift = 1.0;
+    if (largest < 1.2e-38) { // denormal: two steps
+        lift = power_of_two(100);
+        largest *= lift;
+    }
+    int exponent = clamp(exponent_of(largest), -126, 126);
+    float up = power_of_two(-exponent);
+    float down = power_of_two(exponent);
+    return ray(o, (d * lift) * up, (tmin * down) / lift, (tmax * down) / lift, up * lift, self);
+}
+
+#endif

@@ -1,0 +1,118 @@
+// Renders: each workgroup a tile of 8 × 8 pixels, each invocation a pixel, from the samples it has to args.sample_end.
+//
+// One loop shoots every kind of ray, so that the traversal stands in the kernel once: first the camera ray, then for each light that adds anything a
+// shadow ray. Everything is inlined by the drivers; a second call site would double the kernel and its compile time.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "camera.glsl"
+#include "constants.glsl"
+#include "film.glsl"
+#include "phong.glsl"
+#include "ray.glsl"
+#include "sampler.glsl"
+#include "surface.glsl"
+#include "traverse.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(push_constant) uniform push { render_args args; };
+layout(set = 0, binding = BINDING_LIGHTS) uniform usamplerBuffer light_words;
+layout(set = 0, binding = BINDING_GLOBALS) uniform usamplerBuffer global_words;
+layout(set = 0, binding = BINDING_STATUS) buffer status_buffer { status dispatch_status; };
+
+const bool HAS_LIGHT = HAS_DIFFUSE || HAS_SPECULAR;
+
+vec3 background() { return uintBitsToFloat(texelFetch(global_words, 0).xyz); }
+vec3 ambient() { return uintBitsToFloat(texelFetch(global_words, 1).xyz); }
+
+// The pixel of this invocation in the band's images; false beyond the film's edge.
+bool find_pixel(out ivec2 at) {
+    uint tile = ((args.first_tile + gl_WorkGroupID.x) * args.tile_stride) % args.tile_count;
+    uint tiles_across = (args.width + TILE_SIDE - 1u) / TILE_SIDE;
+    uvec2 origin = uvec2(tile % tiles_across, tile / tiles_across) * TILE_SIDE;
+    uvec2 within = uvec2(gl_LocalInvocationID.x % TILE_SIDE, gl_LocalInvocationID.x / TILE_SIDE);
+    at = ivec2(origin + within);
+    return at.x < int(args.width) && at.y < int(args.band_rows);
+}
+
+ray camera_ray(uvec2 pixel, uint number) {
+    vec2 offset = HAS_ANTIALIASING ? film_offset(args.seed, pixel, number, args.spp) : vec2(0.5);
+    vec3 direction = camera_direction(args.corner.xyz, args.du.xyz, args.dv.xyz, pixel, offset);
+    return ray_make(args.position.xyz * args.position.w, direction, 0.0, INFINITY, SELF_NONE);
+}
+
+// What light `number` would add at s, seen along -v, if nothing is in its way; and the way to it.
+vec3 light_reflect(surface s, phong_material m, vec3 v, uint number, out vec3 position) {
+    uvec4 w0 = texelFetch(light_words, int(LIGHT_WORDS * number));
+    uvec4 w1 = texelFetch(light_words, int(LIGHT_WORDS * number + 1u));
+    position = uintBitsToFloat(w0.xyz);
+    vec3 way = position - s.p;
+    vec3 l = normalize_robust(way);
+    float distance = dot(way, l) * args.corner.w;
+    vec3 light = uintBitsToFloat(w1.xyz) * light_falloff(uintBitsToFloat(w0.w), distance);
+    return light * phong_reflect(m, s.n, l, v, HAS_DIFFUSE, HAS_SPECULAR);
+}
+
+// One sample: the camera ray, and the shadow rays of what it hits. `steps` at 0 on return: the sample is not finished.
+film_sample shoot_sample(ray camera, inout int steps, inout uint rays) {
+    film_sample result = film_sample(background(), vec3(0.0), 0.0, -1, -1);
+    surface s;
+    phong_material m;
+    vec3 v = vec3(0.0), adds = vec3(0.0);
+    uint light = 0u;            // the next one to look at
+    bool first = true, more = true;
+    ray r = camera;
+    do {
+        hit h = traverse(r, !first, args.root, steps);
+        rays++;
+        if (!first) {
+            if (h.object < 0) result.radiance += adds;
+        } else if (h.object >= 0) {
+            s = surface_at(r, h);
+            m = material_at(s.material);
+            v = -normalize_tier(r.d);
+            result = film_sample(ambient() * m.ambient, s.n, h.t * length(r.d) * args.corner.w, h.object, h.index);
+        } else {
+            light = args.light_count;
+        }
+        first = false;
+        more = false;
+        while (HAS_LIGHT && !more && light < args.light_count && steps > 0) {
+            steps--;
+            vec3 position;
+            adds = light_reflect(s, m, v, light, position);
+            light++;
+            if (HAS_SHADOWS) {
+                vec3 start = leave_surface(s);
+                more = adds != vec3(0.0);
+                r = ray_make(start, position - start, 0.0, 1.0, TIER == TIER_FAST ? SELF_NONE : s.primitive);
+            } else {
+                result.radiance += adds;
+            }
+        }
+        if (HAS_LIGHT && !more && light < args.light_count) steps = 0;
+    } while (more && steps > 0);
+    if (more) steps = 0;
+    return result;
+}
+
+void main() {
+    ivec2 at;
+    if (!find_pixel(at)) return;
+    film_pixel pixel = film_load(at);
+    uint before = pixel.done, nonfinite = pixel.nonfinite, rays = 0u;
+    int steps = int(MAX_STEPS);
+    uvec2 film_position = uvec2(at) + uvec2(0u, args.band_y);
+    while (pixel.done < args.sample_end && steps > 0) {
+        steps--;
+        film_sample result = shoot_sample(camera_ray(film_position, pixel.done), steps, rays);
+        if (steps > 0) film_add(pixel, result);
+    }
+    film_store(at, pixel);
+    atomicAdd(dispatch_status.rays, rays);
+    if (pixel.nonfinite != nonfinite) atomicAdd(dispatch_status.nonfinite, 1u);
+    if (pixel.done < args.sample_end) {
+        atomicAdd(dispatch_status.unfinished, 1u);
+        if (pixel.done == before) atomicAdd(dispatch_status.stuck, 1u);
+    }
+}

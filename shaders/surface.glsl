@@ -1,0 +1,85 @@
+// What was hit: the point, how far it may be off, its normals, its material. Reads the scene's shading arrays.
+#ifndef SURFACE_GLSL
+#define SURFACE_GLSL
+#include "phong.glsl"
+#include "tier_fast.glsl"
+#include "tier_robust.glsl"
+#include "constants.glsl"
+#include "words.glsl"
+
+layout(set = 0, binding = BINDING_OBJECTS) uniform usamplerBuffer object_words;
+layout(set = 0, binding = BINDING_MATERIALS) uniform usamplerBuffer material_words;
+layout(set = 0, binding = BINDING_INDICES) uniform usamplerBuffer index_words;
+layout(set = 0, binding = BINDING_NORMALS) uniform usamplerBuffer normal_words;
+
+struct surface {
+    vec3 p;         // device units
+    vec3 error;     // bound of the error of each component of p
+    vec3 ng, n;     // unit geometric and shading normal, on the viewer's side
+    uint material;
+    uint primitive; // as a hit has it
+};
+
+vec3 normalize_tier(vec3 v) { return TIER == TIER_FAST ? normalize_fast(v) : normalize_robust(v); }
+
+vec3 leave_surface(surface s) { return TIER == TIER_FAST ? leave_fast(s.p, s.ng) : leave_robust(s.p, s.error, s.ng); }
+
+// The interpolated vertex normal, or ng where the mesh has none or the sum vanishes.
+vec3 smooth_normal(hit h, vec3 ng) {
+    uint first = texelFetch(object_words, h.object * OBJECT_WORDS).x;
+    if (first == NO_NORMALS) return ng;
+    uvec4 vertex = texelFetch(index_words, int(first) + h.index);
+    vec3 n0 = uintBitsToFloat(texelFetch(normal_words, int(vertex.x)).xyz);
+    vec3 n1 = uintBitsToFloat(texelFetch(normal_words, int(vertex.y)).xyz);
+    vec3 n2 = uintBitsToFloat(texelFetch(normal_words, int(vertex.z)).xyz);
+    vec3 n = normalize_robust((1.0 - h.u - h.v) * n0 + h.u * n1 + h.v * n2);
+    return dot(n, n) > 0.5 ? n : ng;
+}
+
+// The point from the barycentrics, the base added last: four roundings of the offset, two of the sum.
+surface triangle_surface(hit h) {
+    uvec4 w0 = triangle_word(TRIANGLE_WORDS * h.primitive);
+    uvec4 w1 = triangle_word(TRIANGLE_WORDS * h.primitive + 1u);
+    uvec4 w2 = triangle_word(TRIANGLE_WORDS * h.primitive + 2u);
+    vec3 v0 = uintBitsToFloat(w0.xyz);
+    precise vec3 e1 = uintBitsToFloat(w1.xyz) - v0;
+    precise vec3 e2 = uintBitsToFloat(w2.xyz) - v0;
+    precise vec3 p = v0 + (h.u * e1 + h.v * e2);
+    vec3 error = (abs(h.u * e1) + abs(h.v * e2)) * 2.3841858e-7 + abs(p) * 1.1920929e-7;
+    vec3 ng = normalize_tier(cross_precise(e1, e2));
+    vec3 n = HAS_SMOOTH_NORMALS ? smooth_normal(h, ng) : ng;
+    return surface(p, error, ng, n, w2.w, h.primitive);
+}
+
+// The point is put back on the sphere along its radius, so that the distance travelled does not count in its error.
+surface sphere_surface(ray r, hit h) {
+    uint number = h.primitive & ~SELF_SPHERE;
+    uvec4 w0 = sphere_word(SPHERE_WORDS * number);
+    uvec4 w1 = sphere_word(SPHERE_WORDS * number + 1u);
+    vec3 center = uintBitsToFloat(w0.xyz);
+    float radius = uintBitsToFloat(w0.w);
+    vec3 n = normalize_tier((r.o - center) + h.t * r.d);
+    precise vec3 p = center + radius * n;
+    vec3 error = vec3(radius * 4.7683716e-7) + abs(p) * 1.1920929e-7;
+    return surface(p, error, n, n, w1.y, h.primitive);
+}
+
+// Normals turned: ng to the viewer's side, n to ng's.
+surface surface_at(ray r, hit h) {
+    bool on_sphere = HAS_SPHERES && (!HAS_TRIANGLES || (h.primitive & SELF_SPHERE) != 0u);
+    surface s;
+    if (on_sphere) s = sphere_surface(r, h);
+    else s = triangle_surface(h);
+    if (dot(s.ng, r.d) > 0.0) s.ng = -s.ng;
+    if (dot(s.n, s.ng) < 0.0) s.n = -s.n;
+    return s;
+}
+
+phong_material material_at(uint number) {
+    uvec4 w0 = texelFetch(material_words, int(MATERIAL_WORDS * number));
+    uvec4 w1 = texelFetch(material_words, int(MATERIAL_WORDS * number + 1u));
+    uvec4 w2 = texelFetch(material_words, int(MATERIAL_WORDS * number + 2u));
+    return phong_material(uintBitsToFloat(w0.xyz), uintBitsToFloat(w1.xyz), uintBitsToFloat(w2.xyz), uintBitsToFloat(w0.w));
+}
+
+#endif

@@ -1,0 +1,109 @@
+// Traversal of the bounding volume hierarchy: closest hit or any hit, one function, one call site in each kernel.
+//
+// While-while after T. Aila and S. Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009: an inner loop over nodes down to a
+// leaf, then a loop over the leaf's primitives; software devices execute both sides of an `if`, but loops skip work. Nearer child first; the
+// farther one goes on the stack.
+// Every loop is bounded by `steps`, which the caller owns; running out is reported, never silent.
+#ifndef TRAVERSE_GLSL
+#define TRAVERSE_GLSL
+#include "box.glsl"
+#include "constants.glsl"
+#include "tier_fast.glsl"
+#include "tier_robust.glsl"
+#include "words.glsl"
+
+// Whether candidate c replaces the best hit: nearer, or as near with a lower object, then a lower primitive.
+bool is_better(float t, int object, int index, hit best) {
+    if (t != best.t) return t < best.t;
+    return object < best.object || (object == best.object && index < best.index);
+}
+
+void test_triangle(uint number, ray r, shear s, inout hit best) {
+    uvec4 w0 = triangle_word(TRIANGLE_WORDS * number);
+    uvec4 w1 = triangle_word(TRIANGLE_WORDS * number + 1u);
+    uvec4 w2 = triangle_word(TRIANGLE_WORDS * number + 2u);
+    vec3 v0 = uintBitsToFloat(w0.xyz), v1 = uintBitsToFloat(w1.xyz), v2 = uintBitsToFloat(w2.xyz);
+    vec3 tuv = TIER == TIER_FAST ? triangle_fast(r.o, r.d, v0, v1, v2) : triangle_robust(r.o, s, v0, v1, v2);
+    bool inside = tuv.x > r.tmin && tuv.x < r.tmax && number != r.self;
+    if (inside && is_better(tuv.x, int(w0.w), int(w1.w), best)) best = hit(tuv.x, tuv.y, tuv.z, number, int(w0.w), int(w1.w));
+}
+
+// A ray that starts on the sphere leaves its root at t = 0 out: the other one is 2 (l·d)/(d·d).
+vec2 sphere_from_itself(ray r, vec3 center) {
+    vec3 l = center - r.o;
+    return vec2(-INFINITY, 2.0 * dot(l, r.d) / dot(r.d, r.d));
+}
+
+void test_sphere(uint number, ray r, inout hit best) {
+    uvec4 w0 = sphere_word(SPHERE_WORDS * number);
+    uvec4 w1 = sphere_word(SPHERE_WORDS * number + 1u);
+    vec3 center = uintBitsToFloat(w0.xyz);
+    float radius = uintBitsToFloat(w0.w);
+    vec2 roots = TIER == TIER_FAST ? sphere_fast(r.o, r.d, center, radius) : sphere_robust(r.o, r.d, center, radius);
+    if (r.self == (number | SELF_SPHERE)) roots = sphere_from_itself(r, center);
+    float t = roots.x > r.tmin ? roots.x : roots.y;
+    bool inside = t > r.tmin && t < r.tmax;
+    if (inside && is_better(t, int(w1.x), 0, best)) best = hit(t, 0.0, 0.0, number | SELF_SPHERE, int(w1.x), 0);
+}
+
+// Shoots r. `any`: stops at the first hit. `steps` is counted down by every loop; at 0 the answer is not to be trusted. A driver may also end a loop
+// by itself (lavapipe before Mesa 23.1 does, after 65535 iterations of all lanes together): each loop's own condition is checked behind it.
+hit traverse(ray r, bool any, uint root, inout int steps) {
+    hit best = hit_none();
+    vec3 inverse = safe_inverse(r.d);
+    shear s;
+    if (TIER != TIER_FAST && HAS_TRIANGLES) s = shear_make(r.d);
+
+    uint stack[STACK_SIZE];
+    stack[0] = REF_NONE;
+    int top = 1;
+    uint ref = root;
+    do {
+        steps--;
+        while ((ref & REF_LEAF) == 0u && steps > 0) {
+            uvec4 w0 = node_word(NODE_WORDS * ref);
+            uvec4 w1 = node_word(NODE_WORDS * ref + 1u);
+            uvec4 w2 = node_word(NODE_WORDS * ref + 2u);
+            uvec4 w3 = node_word(NODE_WORDS * ref + 3u);
+            float limit = min(r.tmax, best.t);
+            float left = box_enter(uintBitsToFloat(w0.xyz), uintBitsToFloat(w1.xyz), r.o, inverse, r.tmin, limit);
+            float right = box_enter(uintBitsToFloat(w2.xyz), uintBitsToFloat(w3.xyz), r.o, inverse, r.tmin, limit);
+            bool swap = right < left;
+            uint near_ref = swap ? w1.w : w0.w, far_ref = swap ? w0.w : w1.w;
+            bool enter_near = min(left, right) < INFINITY, enter_far = max(left, right) < INFINITY;
+            if (enter_far) {
+                stack[top] = far_ref;
+                top++;
+            }
+            if (!enter_near) top--;
+            ref = enter_near ? near_ref : stack[top];
+            steps--;
+        }
+        if ((ref & REF_LEAF) == 0u) steps = 0;
+        if (ref != REF_NONE) {
+            uint first = ref & REF_FIRST_MASK;
+            uint end = first + ((ref >> REF_COUNT_SHIFT) & 15u) + 1u;
+            if (HAS_TRIANGLES && (!HAS_SPHERES || (ref & REF_SPHERES) == 0u)) {
+                do {
+                    test_triangle(first, r, s, best);
+                    first++;
+                    steps--;
+                } while (first < end && steps > 0);
+            }
+            if (HAS_SPHERES && (!HAS_TRIANGLES || (ref & REF_SPHERES) != 0u)) {
+                do {
+                    test_sphere(first, r, best);
+                    first++;
+                    steps--;
+                } while (first < end && steps > 0);
+            }
+            if (first < end) steps = 0;
+            top--;
+            ref = any && best.object >= 0 ? REF_NONE : stack[top];
+        }
+    } while (ref != REF_NONE && steps > 0);
+    if (ref != REF_NONE) steps = 0;
+    return best;
+}
+
+#endif

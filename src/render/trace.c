@@ -1,0 +1,129 @@
+// Batches of rays: in portions that fit the device's buffers, each portion in pieces.
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "render/kernels.h"
+#include "render/pieces.h"
+#include "render/render.h"
+#include "render/upload.h"
+
+#define PORTION_RAYS (2u << 20)     // rays on the device at a time: 64 MiB of rays, 48 MiB of hits
+
+struct batch {
+    struct context *ctx;
+    struct device *device;
+    const struct render_trace_params *params;
+    struct render_trace_stats *stats;
+    struct device_scene ds;
+    struct buffer rays, hits, status;
+    struct kernel kernel;
+    struct pieces pieces;
+    double *times;                  // seconds spent shooting, by repeat
+};
+
+static bool make_buffers(struct batch *b, size_t portion) {
+    struct buffer_params rays = {.name = "rays", .kind = BUFFER_TEXELS, .size = portion * sizeof(struct gn_ray), .host_writes = true};
+    struct buffer_params hits = {.name = "hits", .kind = BUFFER_STORAGE, .size = portion * sizeof(struct gn_hit), .host_reads = true};
+    struct buffer_params status = {.name = "status", .kind = BUFFER_STORAGE, .size = sizeof(struct status), .host_writes = true, .host_reads = true};
+    return buffer_init(&b->rays, b->ctx, b->device, &rays) && buffer_init(&b->hits, b->ctx, b->device, &hits) &&
+           buffer_init(&b->status, b->ctx, b->device, &status);
+}
+
+static bool make_kernel(struct batch *b) {
+    struct kernel_binding bindings[BINDING_COUNT];
+    size_t count = device_scene_bindings(&b->ds, bindings, false);
+    bindings[count++] = (struct kernel_binding){BINDING_RAYS, &b->rays, NULL};
+    bindings[count++] = (struct kernel_binding){BINDING_HITS, &b->hits, NULL};
+    bindings[count++] = (struct kernel_binding){BINDING_STATUS, &b->status, NULL};
+    struct kernel_specialization constants = {.tier = b->params->tier, .effects = b->params->effects, .any_hit = b->params->any};
+    return render_kernel_init(&b->kernel, b->ctx, b->device, KERNEL_TRACE, &constants, bindings, count, sizeof(struct trace_args));
+}
+
+static bool dispatch(struct batch *b, struct trace_args *args, uint32_t groups, double *seconds) {
+    struct status *status = b->status.map;
+    *status = (struct status){0};
+    if (!kernel_run(&b->kernel, b->ctx, b->device, args, groups, seconds)) return false;
+    b->stats->hits += status->hits;
+    b->stats->undecided_rays += status->undecided;
+    if (status->stuck == 0) return true;
+    return fail(b->ctx, GN_LIMIT,
+                "%u rays need more than %u traversal steps, the most that this device's driver allows; "
+                "another device or a newer driver may do (gnomon devices)",
+                status->stuck, b->device->max_loop_steps);
+}
+
+// Shoots the `count` rays in the buffer once and adds the time to *spent. `done` of `total` rays lie behind.
+static bool shoot(struct batch *b, uint32_t count, double *spent, double done, double total) {
+    struct trace_args args = {.root = b->ds.root, .scale = b->ds.scale};
+    for (uint32_t first = 0; first < count;) {
+        uint32_t groups = (count - first + GROUP_SIZE - 1) / GROUP_SIZE;
+        if (groups > b->pieces.groups) groups = b->pieces.groups;
+        args.first = first;
+        args.count = count - first < groups * GROUP_SIZE ? count - first : groups * GROUP_SIZE;
+        double seconds;
+        if (!dispatch(b, &args, groups, &seconds)) return false;
+        pieces_learn(&b->pieces, groups, seconds);
+        *spent += seconds;
+        first += args.count;
+        if (!progress(b->ctx, "trace", (done + first) / total, -1)) return false;
+    }
+    return true;
+}
+
+static bool shoot_portion(struct batch *b, const struct gn_ray *rays, struct gn_hit *hits, size_t begin, size_t count, size_t total) {
+    if (!buffer_upload(&b->rays, b->ctx, b->device, rays + begin, count * sizeof *rays)) return false;
+    uint32_t repeat = b->params->repeat ? b->params->repeat : 1;
+    const struct render_trace_stats before = *b->stats;
+    for (uint32_t i = 0; i < repeat; i++) {
+        *b->stats = before; // every repeat finds the same hits; they count once
+        if (!shoot(b, (uint32_t)count, &b->times[i], (double)begin * repeat + (double)count * i, (double)total * repeat)) return false;
+    }
+    return buffer_download(&b->hits, b->ctx, b->device, hits + begin, count * sizeof *hits);
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, size_t count) {
+    qsort(values, count, sizeof *values, compare_doubles);
+    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+}
+
+static bool run_batch(struct batch *b, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays, struct gn_hit *hits, size_t count) {
+    size_t portion = count < PORTION_RAYS ? count : PORTION_RAYS;
+    double start = clock_seconds();
+    if (!device_scene_init(&b->ds, b->ctx, b->device, scene, bvh, b->params->effects, false) || !make_buffers(b, portion)) return false;
+    b->stats->upload_ms = clock_ms_since(start);
+    start = clock_seconds();
+    struct trace_args nothing = {.root = REF_NONE};
+    if (!make_kernel(b) || !dispatch(b, &nothing, 1, NULL)) return false;
+    b->stats->pipeline_ms = clock_ms_since(start);
+    for (size_t begin = 0; begin < count; begin += portion) {
+        size_t size = count - begin < portion ? count - begin : portion;
+        if (!shoot_portion(b, rays, hits, begin, size, count)) return false;
+    }
+    b->stats->trace_ms = 1e3 * median(b->times, b->params->repeat ? b->params->repeat : 1);
+    return true;
+}
+
+static void batch_finish(struct batch *b) {
+    kernel_finish(&b->kernel, b->device);
+    buffer_finish(&b->rays, b->device);
+    buffer_finish(&b->hits, b->device);
+    buffer_finish(&b->status, b->device);
+    device_scene_finish(&b->ds, b->device);
+    free(b->times);
+}
+
+bool render_trace(struct gn_hit *hits, struct render_trace_stats *stats, struct context *ctx, struct device *device, const struct scene *scene,
+                  const struct bvh *bvh, const struct render_trace_params *params, const struct gn_ray *rays, size_t count) {
+    *stats = (struct render_trace_stats){0};
+    struct batch b = {.ctx = ctx, .device = device, .params = params, .stats = stats, .pieces = pieces_make(0)};
+    b.times = array_alloc(ctx, params->repeat ? params->repeat : 1, sizeof *b.times, "times");
+    bool ok = b.times && run_batch(&b, scene, bvh, rays, hits, count);
+    batch_finish(&b);
+    return ok;
+}

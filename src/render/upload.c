@@ -1,0 +1,360 @@
+#include "render/upload.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/threads.h"
+
+// What the fill functions need. `inner` numbers the inner nodes, `slot` the primitives of each kind in leaf order.
+struct upload {
+    const struct scene *scene;
+    const struct bvh *bvh;
+    uint32_t effects;
+    uint32_t triangle_count, sphere_count;
+    float scale;
+    uint32_t *inner;        // by node: inner nodes before it
+    uint32_t *slot;         // by position in bvh->order: primitives of the same kind before it; NULL where there is only one kind
+    uint32_t inner_count;
+};
+
+static uint32_t float_bits(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static struct word4 word4_of(const float v[3], float scale, uint32_t last) {
+    return (struct word4){{float_bits(v[0] * scale), float_bits(v[1] * scale), float_bits(v[2] * scale), last}};
+}
+
+// The power of two that brings the largest coordinate into [1, 2).
+static float scene_scale(const struct scene *scene) {
+    float largest = 0;
+    for (int i = 0; i < 3; i++) {
+        if (!(scene->bounds_min[i] <= scene->bounds_max[i])) continue;
+        largest = fmaxf(largest, fmaxf(fabsf(scene->bounds_min[i]), fabsf(scene->bounds_max[i])));
+    }
+    if (!(largest > 0) || isinf(largest)) return largest > 0 ? 0x1p-126f : 1.0f;
+    int exponent;
+    frexpf(largest, &exponent); // largest = m · 2^exponent, m in [0.5, 1)
+    exponent = 1 - exponent;
+    return ldexpf(1.0f, exponent < -126 ? -126 : exponent > 126 ? 126 : exponent);
+}
+
+static bool is_sphere(const struct upload *u, uint32_t primitive) { return primitive >= u->triangle_count; }
+
+static bool upload_init(struct upload *u, struct context *ctx, const struct scene *scene, const struct bvh *bvh, uint32_t effects) {
+    *u = (struct upload){.scene = scene, .bvh = bvh, .effects = effects, .scale = scene_scale(scene)};
+    u->triangle_count = scene_triangle_count(scene);
+    u->sphere_count = scene_sphere_count(scene);
+    u->inner = array_alloc(ctx, bvh->node_count, sizeof *u->inner, "node numbers");
+    if (!u->inner) return false;
+    for (uint32_t i = 0; i < bvh->node_count; i++) {
+        u->inner[i] = u->inner_count;
+        if (bvh->nodes[i].count == 0) u->inner_count++;
+    }
+    if (u->triangle_count == 0 || u->sphere_count == 0) return true;
+    u->slot = array_alloc(ctx, bvh->primitive_count, sizeof *u->slot, "primitive numbers");
+    if (!u->slot) return false;
+    uint32_t next[2] = {0, 0};
+    for (uint32_t i = 0; i < bvh->primitive_count; i++) u->slot[i] = next[is_sphere(u, bvh->order[i])]++;
+    return true;
+}
+
+static void upload_finish(struct upload *u) {
+    free(u->inner);
+    free(u->slot);
+}
+
+// --------------------------------------------------------------------------------------------------------------- nodes
+
+// A leaf whose kind is disabled becomes a leaf of the other kind that holds the null primitive behind the last one.
+static uint32_t leaf_reference(const struct upload *u, const struct bvh_node *node) {
+    bool sphere = is_sphere(u, u->bvh->order[node->first]);
+    uint32_t first = u->slot ? u->slot[node->first] : node->first, count = node->count;
+    if (!(u->effects & (sphere ? EFFECT_SPHERES : EFFECT_TRIANGLES))) {
+        sphere = !sphere;
+        first = sphere ? u->sphere_count : u->triangle_count;
+        count = 1;
+    }
+    return REF_LEAF | (sphere ? REF_SPHERES : 0u) | (count - 1) << REF_COUNT_SHIFT | first;
+}
+
+static uint32_t node_reference(const struct upload *u, uint32_t number) {
+    const struct bvh_node *node = &u->bvh->nodes[number];
+    return node->count ? leaf_reference(u, node) : u->inner[number];
+}
+
+static uint32_t root_reference(const struct upload *u) {
+    bool any = u->effects & (EFFECT_TRIANGLES | EFFECT_SPHERES);
+    return u->bvh->node_count && any ? node_reference(u, 0) : REF_NONE;
+}
+
+static void write_node(const struct upload *u, uint32_t number, struct word4 *to) {
+    uint32_t first = u->bvh->nodes[number].first;
+    const struct bvh_node *left = &u->bvh->nodes[first], *right = left + 1;
+    to[0] = word4_of(left->min, u->scale, node_reference(u, first));
+    to[1] = word4_of(left->max, u->scale, node_reference(u, first + 1));
+    to[2] = word4_of(right->min, u->scale, 0);
+    to[3] = word4_of(right->max, u->scale, 0);
+}
+
+// The last node before which there are `inner` inner nodes and which is one itself.
+static uint32_t find_inner(const struct upload *u, uint32_t inner) {
+    uint32_t low = 0, high = u->bvh->node_count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low + 1) / 2;
+        if (u->inner[middle] <= inner) low = middle;
+        else high = middle - 1;
+    }
+    return low;
+}
+
+static bool fill_nodes(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    struct word4 *word = to;
+    uint64_t left = size / (NODE_WORDS * sizeof *word);
+    if (left == 0 || u->inner_count == 0) return true;
+    uint32_t number = find_inner(u, (uint32_t)(offset / (NODE_WORDS * sizeof *word)));
+    for (; left; number++) {
+        if (u->bvh->nodes[number].count) continue;
+        write_node(u, number, word);
+        word += NODE_WORDS;
+        left--;
+    }
+    return true;
+}
+
+// ---------------------------------------------------------------------------------------------------------- primitives
+
+static void write_triangle(const struct upload *u, uint32_t number, struct word4 *to) {
+    struct scene_triangle t = scene_triangle_at(u->scene, number);
+    to[0] = word4_of(t.v[0], u->scale, t.object);
+    to[1] = word4_of(t.v[1], u->scale, t.primitive);
+    to[2] = word4_of(t.v[2], u->scale, t.material);
+}
+
+static void write_sphere(const struct upload *u, uint32_t number, struct word4 *to) {
+    uint32_t object = scene_sphere_object(u->scene, number);
+    const struct scene_shape *shape = &u->scene->shapes[object];
+    to[0] = word4_of(shape->center, u->scale, float_bits(shape->radius * u->scale));
+    to[1] = (struct word4){{object, shape->material, 0, 0}};
+}
+
+// The position in bvh->order of the primitive of kind `spheres` with this slot.
+static uint32_t find_slot(const struct upload *u, uint32_t slot, bool spheres) {
+    if (!u->slot) return slot;
+    uint32_t low = 0, high = u->bvh->primitive_count - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        bool own = is_sphere(u, u->bvh->order[middle]) == spheres;
+        uint32_t before = own ? u->slot[middle] : middle - u->slot[middle]; // primitives of the kind before `middle`
+        if (before + (own ? 1 : 0) > slot) high = middle;
+        else low = middle + 1;
+    }
+    return low;
+}
+
+// Slots [begin, end) of one kind; the slot behind the last primitive is the null primitive, which nothing hits.
+struct slots {
+    const struct upload *u;
+    struct word4 *to;
+    uint64_t first;
+    bool spheres;
+};
+
+static bool write_slots(void *data, size_t begin, size_t end, unsigned thread) {
+    (void)thread;
+    const struct slots *s = data;
+    const struct upload *u = s->u;
+    uint32_t words = s->spheres ? SPHERE_WORDS : TRIANGLE_WORDS;
+    uint32_t count = s->spheres ? u->sphere_count : u->triangle_count;
+    uint32_t position = s->first + begin < count ? find_slot(u, (uint32_t)(s->first + begin), s->spheres) : 0;
+    for (size_t i = begin; i < end; i++) {
+        struct word4 *to = s->to + words * i;
+        if (s->first + i >= count) { // NaN hits nothing
+            for (uint32_t w = 0; w < words; w++) to[w] = (struct word4){{0x7fc00000u, 0x7fc00000u, 0x7fc00000u, 0}};
+            continue;
+        }
+        while (is_sphere(u, u->bvh->order[position]) != s->spheres) position++;
+        uint32_t primitive = u->bvh->order[position++];
+        if (s->spheres) write_sphere(u, primitive - u->triangle_count, to);
+        else write_triangle(u, primitive, to);
+    }
+    return true;
+}
+
+static bool fill_slots(const struct upload *u, void *to, uint64_t offset, uint64_t size, bool spheres) {
+    uint64_t bytes = (spheres ? SPHERE_WORDS : TRIANGLE_WORDS) * sizeof(struct word4);
+    struct slots s = {.u = u, .to = to, .first = offset / bytes, .spheres = spheres};
+    return parallel_for(threads_available(), size / bytes, 1 << 15, write_slots, &s);
+}
+
+static bool fill_triangles(void *data, void *to, uint64_t offset, uint64_t size) { return fill_slots(data, to, offset, size, false); }
+static bool fill_spheres(void *data, void *to, uint64_t offset, uint64_t size) { return fill_slots(data, to, offset, size, true); }
+
+// ------------------------------------------------------------------------------------------------------------- shading
+
+static bool has_normals(const struct scene_shape *shape) { return shape->type == SHAPE_MESH && shape->mesh.normals; }
+
+// Words [first, first + count) of an array that is the meshes' parts one after another.
+struct part { uint64_t first, count; };
+
+// The overlap of a mesh's part, `length` long and beginning at `start`, with what is to be filled; false if there is none.
+static bool overlap(struct part want, uint64_t start, uint64_t length, struct part *out) {
+    uint64_t begin = want.first > start ? want.first : start;
+    uint64_t end = want.first + want.count < start + length ? want.first + want.count : start + length;
+    *out = (struct part){begin, end > begin ? end - begin : 0};
+    return end > begin;
+}
+
+static bool fill_indices(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    struct part want = {offset / sizeof(struct word4), size / sizeof(struct word4)}, have;
+    uint64_t triangles = 0;
+    uint32_t vertices = 0;
+    for (uint32_t i = 0; i < u->scene->shape_count; i++) {
+        const struct scene_mesh *mesh = &u->scene->shapes[i].mesh;
+        if (!has_normals(&u->scene->shapes[i])) continue;
+        if (overlap(want, triangles, mesh->triangle_count, &have)) {
+            struct word4 *word = (struct word4 *)to + (have.first - want.first);
+            const uint32_t *index = mesh->indices + 3 * (have.first - triangles);
+            for (uint64_t k = 0; k < have.count; k++, index += 3)
+                word[k] = (struct word4){{vertices + index[0], vertices + index[1], vertices + index[2], 0}};
+        }
+        triangles += mesh->triangle_count;
+        vertices += mesh->vertex_count;
+    }
+    return true;
+}
+
+static bool fill_normals(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    struct part want = {offset / sizeof(struct word4), size / sizeof(struct word4)}, have;
+    uint64_t vertices = 0;
+    for (uint32_t i = 0; i < u->scene->shape_count; i++) {
+        const struct scene_mesh *mesh = &u->scene->shapes[i].mesh;
+        if (!has_normals(&u->scene->shapes[i])) continue;
+        if (overlap(want, vertices, mesh->vertex_count, &have)) {
+            struct word4 *word = (struct word4 *)to + (have.first - want.first);
+            const float *normal = mesh->normals + 3 * (have.first - vertices);
+            for (uint64_t k = 0; k < have.count; k++) word[k] = word4_of(normal + 3 * k, 1, 0);
+        }
+        vertices += mesh->vertex_count;
+    }
+    return true;
+}
+
+static bool fill_objects(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    uint64_t begin = offset / sizeof(struct word4), end = begin + size / sizeof(struct word4);
+    uint32_t triangles = 0;
+    for (uint32_t i = 0; i < u->scene->shape_count && i < end; i++) {
+        bool normals = has_normals(&u->scene->shapes[i]);
+        if (i >= begin) ((struct word4 *)to)[i - begin] = (struct word4){{normals ? triangles : NO_NORMALS, 0, 0, 0}};
+        if (normals) triangles += u->scene->shapes[i].mesh.triangle_count;
+    }
+    return true;
+}
+
+static bool fill_materials(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    struct word4 *word = to;
+    const struct scene_material *m = u->scene->materials + offset / (MATERIAL_WORDS * sizeof *word);
+    for (uint64_t left = size / (MATERIAL_WORDS * sizeof *word); left; left--, m++, word += MATERIAL_WORDS) {
+        word[0] = word4_of(m->ambient, 1, float_bits(m->shininess));
+        word[1] = word4_of(m->diffuse, 1, 0);
+        word[2] = word4_of(m->specular, 1, 0);
+    }
+    return true;
+}
+
+static bool fill_lights(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    struct word4 *word = to;
+    const struct scene_light *l = u->scene->lights + offset / (LIGHT_WORDS * sizeof *word);
+    for (uint64_t left = size / (LIGHT_WORDS * sizeof *word); left; left--, l++, word += LIGHT_WORDS) {
+        word[0] = word4_of(l->position, u->scale, float_bits(l->falloff == FALLOFF_INVERSE_SQUARE ? 1.0f : 0.0f));
+        word[1] = word4_of(l->intensity, 1, 0);
+    }
+    return true;
+}
+
+static bool fill_globals(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    struct word4 words[GLOBAL_WORDS] = {word4_of(u->scene->background, 1, 0), word4_of(u->scene->ambient, 1, 0)};
+    memcpy(to, (const char *)words + offset, size);
+    return true;
+}
+
+// ------------------------------------------------------------------------------------------------------------ together
+
+// One array: `count` records of `words` words.
+static bool make(struct buffer *buffer, struct context *ctx, struct device *device, struct upload *u, const char *name, uint64_t count,
+                 uint32_t words, bool (*fill)(void *data, void *to, uint64_t offset, uint64_t size)) {
+    size_t record = words * sizeof(struct word4);
+    struct buffer_params params = {.name = name, .kind = BUFFER_TEXELS, .size = count * record, .host_writes = true};
+    if (!buffer_init(buffer, ctx, device, &params)) return false;
+    return count == 0 || buffer_fill(buffer, ctx, device, record, fill, u);
+}
+
+static void count_smooth(const struct scene *scene, uint64_t *triangles, uint64_t *vertices) {
+    *triangles = *vertices = 0;
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
+        if (!has_normals(&scene->shapes[i])) continue;
+        *triangles += scene->shapes[i].mesh.triangle_count;
+        *vertices += scene->shapes[i].mesh.vertex_count;
+    }
+}
+
+static bool make_shading(struct device_scene *out, struct context *ctx, struct device *device, struct upload *u) {
+    uint64_t smooth_triangles = 0, smooth_vertices = 0;
+    bool smooth = u->effects & EFFECT_SMOOTH_NORMALS;
+    if (smooth) count_smooth(u->scene, &smooth_triangles, &smooth_vertices);
+    out->light_count = u->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR) ? u->scene->light_count : 0;
+    return make(&out->objects, ctx, device, u, "objects", smooth ? u->scene->shape_count : 0, OBJECT_WORDS, fill_objects) &&
+           make(&out->indices, ctx, device, u, "vertex indices", smooth_triangles, 1, fill_indices) &&
+           make(&out->normals, ctx, device, u, "normals", smooth_vertices, 1, fill_normals) &&
+           make(&out->materials, ctx, device, u, "materials", u->scene->material_count, MATERIAL_WORDS, fill_materials) &&
+           make(&out->lights, ctx, device, u, "lights", out->light_count, LIGHT_WORDS, fill_lights) &&
+           make(&out->globals, ctx, device, u, "globals", 1, GLOBAL_WORDS, fill_globals);
+}
+
+static bool make_geometry(struct device_scene *out, struct context *ctx, struct device *device, struct upload *u) {
+    bool triangles = u->effects & EFFECT_TRIANGLES, spheres = u->effects & EFFECT_SPHERES;
+    out->scale = u->scale;
+    out->root = root_reference(u);
+    return make(&out->nodes, ctx, device, u, "bvh nodes", u->inner_count, NODE_WORDS, fill_nodes) &&
+           make(&out->triangles, ctx, device, u, "triangles", triangles ? u->triangle_count + 1ull : 0, TRIANGLE_WORDS, fill_triangles) &&
+           make(&out->spheres, ctx, device, u, "spheres", spheres ? u->sphere_count + 1ull : 0, SPHERE_WORDS, fill_spheres);
+}
+
+bool device_scene_init(struct device_scene *out, struct context *ctx, struct device *device, const struct scene *scene,
+                       const struct bvh *bvh, uint32_t effects, bool shading) {
+    *out = (struct device_scene){0};
+    struct upload u;
+    bool ok = upload_init(&u, ctx, scene, bvh, effects) && make_geometry(out, ctx, device, &u) &&
+              (!shading || make_shading(out, ctx, device, &u));
+    upload_finish(&u);
+    if (!ok) device_scene_finish(out, device);
+    return ok;
+}
+
+void device_scene_finish(struct device_scene *ds, struct device *device) {
+    struct buffer *buffers[] = {&ds->nodes, &ds->triangles, &ds->spheres, &ds->objects, &ds->materials,
+                                &ds->lights, &ds->indices, &ds->normals, &ds->globals};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) buffer_finish(buffers[i], device);
+    *ds = (struct device_scene){0};
+}
+
+size_t device_scene_bindings(struct device_scene *ds, struct kernel_binding *bindings, bool shading) {
+    struct kernel_binding all[DEVICE_SCENE_BINDINGS] = {
+        {BINDING_NODES, &ds->nodes, NULL},         {BINDING_TRIANGLES, &ds->triangles, NULL}, {BINDING_SPHERES, &ds->spheres, NULL},
+        {BINDING_OBJECTS, &ds->objects, NULL},     {BINDING_MATERIALS, &ds->materials, NULL}, {BINDING_LIGHTS, &ds->lights, NULL},
+        {BINDING_INDICES, &ds->indices, NULL},     {BINDING_NORMALS, &ds->normals, NULL},     {BINDING_GLOBALS, &ds->globals, NULL},
+    };
+    size_t count = shading ? DEVICE_SCENE_BINDINGS : 3;
+    memcpy(bindings, all, count * sizeof *bindings);
+    return count;
+}
