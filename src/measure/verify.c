@@ -1,0 +1,59 @@
+// See verify.h for the rule and its argument.
+#include "measure/verify.h"
+
+#include <math.h>
+
+uint64_t verify_allowed(uint64_t pixels) {
+    uint64_t allowed = (uint64_t)(VERIFY_ALLOWED_FRACTION * (double)pixels);
+    return allowed < VERIFY_ALLOWED_LEAST ? VERIFY_ALLOWED_LEAST : allowed;
+}
+
+struct pixel_error {
+    double worst;               // over the channels, absolute
+    double squares;             // summed over the channels
+    double limits;              // worst, in units of the limit that holds at its value; +inf if something is not finite
+};
+
+static struct pixel_error pixel_error(const float *device, const float *reference, double tolerance) {
+    struct pixel_error error = {0};
+    for (int c = 0; c < 3; c++) {
+        double right = reference[c], off = fabs((double)device[c] - right);
+        if (!isfinite(off)) return (struct pixel_error){.limits = INFINITY};
+        error.worst = fmax(error.worst, off);
+        error.squares += off * off;
+        error.limits = fmax(error.limits, off / fmax(tolerance, VERIFY_RELATIVE * fabs(right)));
+    }
+    return error;
+}
+
+static void add_pixel(struct gn_verify_result *out, struct pixel_error error, uint32_t x, uint32_t y) {
+    if (isinf(error.limits)) out->nonfinite_pixels++;
+    if (!(error.limits <= 1)) out->pixels_differing++;
+    if (error.worst > out->max_abs) out->max_abs = error.worst, out->worst_x = x, out->worst_y = y;
+}
+
+bool verify_pictures(struct gn_verify_result *out, struct image *difference, struct context *ctx, struct verify_side device,
+                     struct verify_side reference, double tolerance) {
+    uint32_t width = device.color->width, height = device.color->height;
+    if (reference.color->width != width || reference.color->height != height)
+        return fail(ctx, GN_INTERNAL, "the device's picture and the reference's differ in size");
+    if (difference && !image_init(difference, ctx, width, height, 1, "the difference")) return false;
+    double squares = 0;
+    for (uint32_t y = 0; y < height; y++) {
+        for (uint32_t x = 0; x < width; x++) {
+            size_t i = (size_t)y * width + x;
+            struct pixel_error error = pixel_error(device.color->pixels + 3 * i, reference.color->pixels + 3 * i, tolerance);
+            const float *a = device.id->pixels + 2 * i, *b = reference.id->pixels + 2 * i;
+            add_pixel(out, error, x, y);
+            out->wrong_hits += a[0] != b[0] || a[1] != b[1];
+            squares += error.squares;
+            if (difference) difference->pixels[i] = (float)fmin(1, 0.5 * error.limits);
+        }
+    }
+    out->tolerance = tolerance;
+    out->pixels = (uint64_t)width * height;
+    out->pixels_allowed = verify_allowed(out->pixels);
+    out->rmse = sqrt(squares / (3 * (double)out->pixels));
+    out->pass = out->pixels_differing <= out->pixels_allowed && out->wrong_hits <= out->pixels_allowed && out->nonfinite_pixels == 0;
+    return true;
+}
