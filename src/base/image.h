@@ -23,19 +23,23 @@ uint8_t transfer_encode(enum transfer transfer, float value);
 // The linear value of an 8-bit code.
 float transfer_decode(enum transfer transfer, uint8_t code);
 
+// The linear value of an sRGB-encoded one, both 0 to 1 (IEC 61966-2-1).
+double srgb_decode(double encoded);
+
 // One named layer of an EXR file: image with 1, 2 or 3 channels; channel names in the file are given by `names`.
 struct image_layer {
     const struct image *image;
     const char *names[4];       // one for each channel, e.g. "R","G","B" or "Z" or "normal.X"
 };
 
-// Writers; each whole or not there (GN_IO). PNG takes 1 or 3 channels, PFM 1 or 3.
+// Writers; each whole or not there (GN_IO). PNG takes 1 or 3 channels, PFM 1 or 3; the layers of an EXR are of one size.
 bool image_write_png(const struct image *image, struct context *ctx, const char *path, enum transfer transfer);
 bool image_write_pfm(const struct image *image, struct context *ctx, const char *path);
 bool image_write_exr(const struct image_layer *layers, size_t count, struct context *ctx, const char *path);
 
-// Reads .png (8 or 16 bit, grey or colour, decoded from sRGB to linear), .exr (channels R, G, B, or Y; half or float;
-// scan lines or tiles) or .pfm, by its content; 3 channels. GN_IO with the path and what is wrong.
+// Reads .png (8 or 16 bit, grey or colour, decoded from sRGB to linear, unless the file says that its gamma is 1; alpha is ignored), .exr
+// (channels R, G, B, or Y; half, float or uint; scan lines or tiles, of which the finest level is read) or .pfm (its scale is ignored), by its
+// content; 3 channels. GN_IO with the path and what is wrong.
 bool image_read(struct image *out, struct context *ctx, const char *path);
 
 #endif
