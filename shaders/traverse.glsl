@@ -50,7 +50,7 @@ void test_sphere(uint number, ray r, inout hit best) {
 // by itself (lavapipe before Mesa 23.1 does, after 65535 iterations of all lanes together): each loop's own condition is checked behind it.
 hit traverse(ray r, bool any, uint root, inout int steps) {
     hit best = hit_none();
-    vec3 inverse = safe_inverse(r.d);
+    slabs slab = slabs_make(r.o, r.d);
     shear s;
     if (TIER != TIER_FAST && HAS_TRIANGLES) s = shear_make(r.d);
 
@@ -66,8 +66,8 @@ hit traverse(ray r, bool any, uint root, inout int steps) {
             uvec4 w2 = node_word(NODE_WORDS * ref + 2u);
             uvec4 w3 = node_word(NODE_WORDS * ref + 3u);
             float limit = min(r.tmax, best.t);
-            float left = box_enter(uintBitsToFloat(w0.xyz), uintBitsToFloat(w1.xyz), r.o, inverse, r.tmin, limit);
-            float right = box_enter(uintBitsToFloat(w2.xyz), uintBitsToFloat(w3.xyz), r.o, inverse, r.tmin, limit);
+            float left = box_enter(uintBitsToFloat(w0.xyz), uintBitsToFloat(w1.xyz), slab, r.tmin, limit);
+            float right = box_enter(uintBitsToFloat(w2.xyz), uintBitsToFloat(w3.xyz), slab, r.tmin, limit);
             bool swap = right < left;
             uint near_ref = swap ? w1.w : w0.w, far_ref = swap ? w0.w : w1.w;
             bool enter_near = min(left, right) < INFINITY, enter_far = max(left, right) < INFINITY;
