@@ -197,7 +197,7 @@ static bool array_read(void **out, size_t *count, struct context *ctx, const cha
     *count = 0;
     struct file_bytes bytes;
     struct header header = {0};
-    struct scan text;
+    struct scan text = {0};
     if (!file_read(&bytes, ctx, path, GN_IO)) return false;
     if (!find_header(&bytes, ctx, path, &text)) goto fail;
     if (!parse_dictionary(&header, text)) {
