@@ -1,0 +1,73 @@
+// Whether and where a ray crosses a triangle or a sphere, and which of two crossings comes first: decided exactly.
+//
+// Each decision is made in two stages. The first is fp64 with a proven bound on its error (derived beside each formula); what it leaves open
+// goes to exact integers. Intervals of t are kept so that most comparisons need neither. Rules and formulas: right answer, in docs/.
+#ifndef REFERENCE_PREDICATES_H
+#define REFERENCE_PREDICATES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "gnomon.h"
+#include "reference/fraction.h"
+#include "reference/interval.h"
+
+// A ray with exact components: every number is as exact_holds says, but for infinite bounds. d is not zero; where tmin >= tmax nothing is crossed.
+struct ref_ray {
+    double o[3], d[3];
+    double tmin, tmax;
+    uint32_t undecided;         // decisions that the first stage left open, so far
+};
+
+// The exact form of a ray. False, and a zeroed *out, for one that is invalid: a NaN or infinity in o or d, d = 0, a bound that is NaN.
+bool ref_ray_make(struct ref_ray *out, const struct gn_ray *ray);
+
+// Which solution of a sphere's equation: t = ((c-o)·d ± √F)/(d·d).
+enum sphere_root {
+    ROOT_NEAR = -1,
+    ROOT_FAR = 1,
+    ROOT_OTHER = 0,             // of a ray that starts on the sphere by definition: t = 2(c-o)·d/(d·d); the first one is 0
+};
+
+// Where a ray crosses a primitive. Pointers are borrowed from the scene.
+struct crossing {
+    const float *v[3];          // vertices of a triangle; NULL for a sphere
+    const float *center;        // of a sphere; NULL for a triangle
+    float radius;
+    int side;                   // of a triangle: the sign of d·N; N = (v1-v0)×(v2-v0)
+    enum sphere_root root;      // of a sphere
+    struct interval t;          // contains the exact t; about 36 bits of it at least
+    uint32_t number;            // of the primitive in the BVH, as are the next three: filled by the traversal
+    uint32_t object, primitive, material;
+};
+
+// Whether the ray crosses within its open interval; if so *out tells where.
+bool triangle_cross(struct crossing *out, struct ref_ray *ray, const float *const v[3]);
+bool sphere_cross(struct crossing *out, struct ref_ray *ray, const float center[3], float radius);
+
+// The same for the sphere on which the ray starts.
+bool sphere_cross_again(struct crossing *out, struct ref_ray *ray, const float center[3], float radius);
+
+// The sign of t_a - t_b.
+int crossing_compare(struct ref_ray *ray, const struct crossing *a, const struct crossing *b);
+
+// Intervals of a triangle's weights u (of v1) and v (of v2), about 36 bits each.
+void triangle_weights(struct interval *u, struct interval *v, const struct ref_ray *ray, const struct crossing *crossing);
+
+// The unit normal (v1-v0)×(v2-v0), right in fp64 however thin the triangle; 0 if it has no area.
+void triangle_normal(double normal[3], const float *const v[3]);
+
+// Whether all of triangle w lies in the plane of triangle v, exactly.
+bool triangle_in_plane(const float *const v[3], const float *const w[3]);
+
+// The exact numbers behind a crossing: t; u and v of a triangle.
+void crossing_t(struct fraction *t, const struct ref_ray *ray, const struct crossing *crossing);
+void crossing_u(struct fraction *u, const struct ref_ray *ray, const struct crossing *crossing);
+void crossing_v(struct fraction *v, const struct ref_ray *ray, const struct crossing *crossing);
+
+// For triangle.c and sphere.c: whether out->t lies within the ray's open interval; the exact t of either kind.
+bool crossing_inside(struct ref_ray *ray, const struct crossing *crossing);
+void triangle_t(struct fraction *t, const struct ref_ray *ray, const struct crossing *crossing);
+void sphere_t(struct fraction *t, const struct ref_ray *ray, const struct crossing *crossing);
+
+#endif

@@ -1,0 +1,142 @@
+// Pictures, as `gnomon render --reference` makes them: every pixel by itself, sample by sample, on all cores.
+#include <stdatomic.h>
+
+#include "base/threads.h"
+#include "reference/reference.h"
+#include "reference/sampler.h"
+#include "reference/shade.h"
+#include "render/camera.h"
+
+// Rays between two looks at whether to stop.
+#define CHUNK_SAMPLES 4096
+
+struct picture {
+    struct reference_film *film;
+    const struct scene *scene;
+    const struct reference_params *params;
+    struct ref_world world;
+    struct camera_rays camera;
+    atomic_uint_fast64_t rays, nonfinite_pixels;
+};
+
+// What the samples of one pixel add up to.
+struct pixel {
+    double color[3], normal[3], depth;
+    uint32_t finite, hits;          // samples
+    int32_t object, primitive;      // of sample 0
+    uint64_t rays;
+};
+
+// The sequence of fp32 operations that camera.h defines; each assignment rounds.
+static struct gn_ray camera_ray(const struct camera_rays *camera, uint32_t x, uint32_t y, const float offset[2]) {
+    struct gn_ray ray = {.tmin = 0, .tmax = INFINITY};
+    for (int i = 0; i < 3; i++) {
+        float right = (float)x * camera->du[i], down = (float)y * camera->dv[i];
+        float to_pixel = camera->corner[i] + right;
+        to_pixel = to_pixel + down;
+        float within_right = offset[0] * camera->du[i], within_down = offset[1] * camera->dv[i];
+        float within = within_right + within_down;
+        ray.origin[i] = camera->position[i];
+        ray.direction[i] = to_pixel + within;
+    }
+    return ray;
+}
+
+// A sample that fp32 cannot hold is dropped.
+static void add_color(struct pixel *pixel, const double color[3]) {
+    for (int i = 0; i < 3; i++) {
+        if (!isfinite((float)color[i])) return;
+    }
+    for (int i = 0; i < 3; i++) pixel->color[i] += color[i];
+    pixel->finite++;
+}
+
+static void add_surface(struct pixel *pixel, const struct ref_ray *ray, const struct surface *surface) {
+    double length = sqrt(ray->d[0] * ray->d[0] + ray->d[1] * ray->d[1] + ray->d[2] * ray->d[2]);
+    pixel->depth += interval_mid(surface->crossing.t) * length;
+    for (int i = 0; i < 3; i++) pixel->normal[i] += surface->n[i];
+    pixel->hits++;
+}
+
+static void add_sample(struct pixel *pixel, const struct picture *picture, uint32_t x, uint32_t y, uint32_t sample) {
+    float offset[2] = {0.5f, 0.5f};
+    if (picture->params->effects & EFFECT_ANTIALIASING) sampler_film(offset, picture->params->seed, x, y, sample, picture->params->spp);
+    struct gn_ray from = camera_ray(&picture->camera, x, y, offset);
+    struct ref_ray ray;
+    struct crossing crossing;
+    double color[3] = {picture->scene->background[0], picture->scene->background[1], picture->scene->background[2]};
+    pixel->rays++;
+    if (ref_ray_make(&ray, &from) && closest_hit(&crossing, &picture->world, &ray)) {
+        struct surface surface = surface_at(&picture->world, &ray, &crossing);
+        shade(color, &pixel->rays, &picture->world, &surface);
+        add_surface(pixel, &ray, &surface);
+        if (sample == 0) {
+            pixel->object = (int32_t)crossing.object;
+            pixel->primitive = (int32_t)crossing.primitive;
+        }
+    }
+    add_color(pixel, color);
+}
+
+static void store(struct reference_film *film, size_t index, const struct pixel *pixel) {
+    for (int i = 0; i < 3; i++) {
+        film->color.pixels[3 * index + i] = pixel->finite ? (float)(pixel->color[i] / pixel->finite) : 0;
+        if (film->normal.pixels) film->normal.pixels[3 * index + i] = pixel->hits ? (float)(pixel->normal[i] / pixel->hits) : 0;
+    }
+    if (film->depth.pixels) film->depth.pixels[index] = pixel->hits ? (float)(pixel->depth / pixel->hits) : INFINITY;
+    if (film->id.pixels) {
+        film->id.pixels[2 * index] = (float)pixel->object;
+        film->id.pixels[2 * index + 1] = (float)pixel->primitive;
+    }
+}
+
+static bool render_some(void *data, size_t begin, size_t end, unsigned thread) {
+    (void)thread;
+    struct picture *picture = data;
+    const struct reference_params *params = picture->params;
+    uint64_t rays = 0, nonfinite = 0;
+    for (size_t index = begin; index < end; index++) {
+        struct pixel pixel = {.object = -1, .primitive = -1};
+        for (uint32_t sample = 0; sample < params->spp; sample++) {
+            add_sample(&pixel, picture, (uint32_t)(index % params->width), (uint32_t)(index / params->width), sample);
+        }
+        store(picture->film, index, &pixel);
+        rays += pixel.rays;
+        nonfinite += pixel.finite < params->spp;
+    }
+    atomic_fetch_add(&picture->rays, rays);
+    atomic_fetch_add(&picture->nonfinite_pixels, nonfinite);
+    return true;
+}
+
+static bool film_init(struct reference_film *out, struct context *ctx, const struct reference_params *params) {
+    uint32_t width = params->width, height = params->height;
+    if (!image_init(&out->color, ctx, width, height, 3, "the picture")) return false;
+    if (params->aovs & GN_AOV_DEPTH && !image_init(&out->depth, ctx, width, height, 1, "the depth layer")) return false;
+    if (params->aovs & GN_AOV_NORMAL && !image_init(&out->normal, ctx, width, height, 3, "the normal layer")) return false;
+    return !(params->aovs & GN_AOV_ID) || image_init(&out->id, ctx, width, height, 2, "the id layer");
+}
+
+bool reference_render(struct reference_film *out, struct context *ctx, const struct scene *scene, const struct bvh *bvh,
+                      const struct reference_params *params) {
+    *out = (struct reference_film){.rays = 0};
+    if (!film_init(out, ctx, params)) goto fail;
+    struct picture picture = {.film = out, .scene = scene, .params = params};
+    picture.world = ref_world_make(scene, bvh, params->effects);
+    picture.camera = camera_rays_make(&scene->camera, params->width, params->height);
+    size_t grain = CHUNK_SAMPLES / params->spp;
+    if (!parallel_for_progress(ctx, "reference", (size_t)params->width * params->height, grain, render_some, &picture)) goto fail;
+    out->rays = picture.rays;
+    out->nonfinite_pixels = picture.nonfinite_pixels;
+    return true;
+fail:
+    reference_film_finish(out);
+    return false;
+}
+
+void reference_film_finish(struct reference_film *film) {
+    image_finish(&film->color);
+    image_finish(&film->depth);
+    image_finish(&film->normal);
+    image_finish(&film->id);
+}

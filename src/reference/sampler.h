@@ -1,0 +1,16 @@
+// The sampler's fp32 numbers on the CPU, with the same bits as shaders/sampler.glsl: Owen-scrambled Sobol points, counter-based.
+#ifndef REFERENCE_SAMPLER_H
+#define REFERENCE_SAMPLER_H
+
+#include <stdint.h>
+
+// Pairs of dimensions, as in sampler.glsl.
+#define SAMPLER_PAIR_FILM 0u
+
+// Two numbers of 32 random bits for sample `index` of pixel (x, y).
+void sampler_bits(uint32_t bits[2], uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t pair);
+
+// Where in its pixel sample `index` of `spp` lies, in [0, 1): the centre when there is but one.
+void sampler_film(float offset[2], uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t spp);
+
+#endif
