@@ -12,7 +12,7 @@
 #include "base/clock.h"
 
 // What a pipe or a device may give: some never end.
-#define STREAM_LIMIT ((size_t)1 << 30)
+#define STREAM_LIMIT ((size_t)256 << 20)
 
 static const char *file_name(const char *path) {
     const char *slash = strrchr(path, '/');
@@ -38,7 +38,7 @@ static bool stream_read(struct file_bytes *out, struct context *ctx, FILE *strea
         if (out->size == capacity) capacity *= 2;
         if (!bytes_reserve(out, ctx, path, capacity)) return false;
         out->size += fread(out->data + out->size, 1, capacity - out->size, stream);
-        if (!regular && out->size > STREAM_LIMIT) return fail(ctx, blame, "%s: gives more than 1 GiB; only a regular file may", path);
+        if (!regular && out->size > STREAM_LIMIT) return fail(ctx, blame, "%s: gives more than 256 MiB; only a regular file may", path);
     } while (out->size == capacity);
     if (ferror(stream)) return fail(ctx, blame, "%s: cannot be read: %s", path, strerror(errno));
     out->data[out->size] = '\0';

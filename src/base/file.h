@@ -10,7 +10,7 @@
 struct file_bytes { char *data; size_t size; };
 
 // Reads a file. `blame` is the status on failure: GN_SCENE for assets, GN_IO for other inputs. The message names the path and the
-// cause ("no such file", "is a directory", …). A pipe or device is read to its end, but not past 1 GiB.
+// cause ("no such file", "is a directory", …). A pipe or device is read to its end, but not past 256 MiB.
 bool file_read(struct file_bytes *out, struct context *ctx, const char *path, enum gn_status blame);
 void file_bytes_finish(struct file_bytes *bytes);
 
