@@ -4,7 +4,7 @@
 
 #include "device/memory.h"
 
-// What stands at one binding of set 0: exactly one of buffer and image.
+// What stands at one binding of set 0: exactly one of buffer and image. The same buffer may stand at several.
 struct kernel_binding {
     uint32_t binding;
     struct buffer *buffer;
@@ -13,9 +13,10 @@ struct kernel_binding {
 
 struct kernel_constant { uint32_t id, value; };    // specialization; bools are 0 or 1
 
-// How to make a kernel. Arrays are borrowed for the call.
+// How to make a kernel. Arrays are borrowed for the call. Every binding that the shader declares and uses anywhere must be given, also
+// where a specialization constant removes the code that uses it: Vulkan judges the module as it is written.
 struct kernel_params {
-    const char *name;                       // for messages and debug labels
+    const char *name;                       // for messages and debug labels; outlives the kernel
     const uint32_t *spirv;
     size_t spirv_size;                      // bytes
     const struct kernel_constant *constants;
@@ -33,26 +34,22 @@ struct kernel {
     VkDescriptorSet set;
     VkPipelineLayout layout;
     VkPipeline pipeline;
-    VkCommandBuffer commands;
-    VkFence fence;
     uint32_t push_size;
-    bool warm;                  // has been dispatched: the driver has compiled it
+    bool warm;                  // has done work: the driver has compiled it
     const char *name;
 };
 
-// GN_SHADER with the kernel's name and what the driver said.
+// Makes a kernel. GN_SHADER, with its name, when the SPIR-V is no whole module of Vulkan 1.1 or the driver refuses it.
 bool kernel_init(struct kernel *out, struct context *ctx, struct device *device, const struct kernel_params *params);
 void kernel_finish(struct kernel *kernel, struct device *device);
 
-// Seconds a dispatch may take before the device counts as hung; the first of a kernel, which may compile, gets more.
-#define DISPATCH_LIMIT_SECONDS 20.0
-#define FIRST_DISPATCH_LIMIT_SECONDS 120.0
-
-// Runs `groups` workgroups (split over y by the kernel's own means is not needed: at most 65535) and waits. *seconds, if asked for, is the
-// time from submission to completion: the device's timestamps if it has them, else the host's clock.
-// Results written by the kernel are visible to the host and to later dispatches. Polls every 100 ms, so that progress(ctx, …) can cancel the
-// caller between dispatches. GN_DEVICE_LOST on time-out, saying what may help (a smaller tile, another MESA_SHADER_CACHE_DIR, an update of the driver);
-// the device is then marked lost and its objects are not waited for again.
+// Runs `groups` workgroups (at most maxComputeWorkGroupCount[0], 65535 or more) with push_size bytes of push constants, and waits. With 0
+// groups nothing runs, but lavapipe compiles. *seconds, if asked for, is the time from submission to completion: by the device's timestamps
+// if it has them, else by the host's clock. What the kernel wrote is visible to the host, to later dispatches and transfers.
+//
+// While it waits it asks progress(ctx, "device", -1, -1) some ten times a second whether to go on, so that a first dispatch that compiles
+// for seconds can be cancelled within one; -1 means that there is nothing new to show. GN_DEVICE_LOST on time-out (device->dispatch_limit,
+// first_dispatch_limit), saying what may help.
 bool kernel_run(struct kernel *kernel, struct context *ctx, struct device *device, const void *push, uint32_t groups, double *seconds);
 
 #endif
