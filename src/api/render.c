@@ -10,6 +10,7 @@
 #include "render/render.h"
 
 #define MOST_PIXELS 65535u      // along one side of a film
+#define MOST_SAMPLES (1u << 24) // of a pixel
 
 // ------------------------------------------------------------------------------------------------------------- accuracy
 
@@ -50,6 +51,7 @@ bool job_make(struct job *out, struct context *ctx, const struct gn_scene *scene
     };
     if (out->width > MOST_PIXELS || out->height > MOST_PIXELS)
         return fail(ctx, GN_USAGE, "a picture of %u × %u pixels: at most %u along a side", out->width, out->height, MOST_PIXELS);
+    if (out->spp > MOST_SAMPLES) return fail(ctx, GN_USAGE, "%u samples per pixel: at most %u", out->spp, MOST_SAMPLES);
     if (out->aovs & ~(uint32_t)(GN_AOV_DEPTH | GN_AOV_NORMAL | GN_AOV_ID))
         return fail(ctx, GN_USAGE, "unknown layers 0x%x", out->aovs & ~(uint32_t)(GN_AOV_DEPTH | GN_AOV_NORMAL | GN_AOV_ID));
     if (!reference && !tier_of_accuracy(&out->tier, &out->accuracy, ctx, params->accuracy)) return false;

@@ -87,6 +87,7 @@ static bool no_command(struct run *run, const char *name) {
 static bool help(struct run *run, int argc, char **argv) {
     const struct command *command = argc > 0 ? command_find(argv[0]) : NULL;
     if (argc > 0 && argv[0][0] != '-' && !command) return no_command(run, argv[0]);
+    run->settings.json = false;
     if (command) help_command(command);
     else help_overview();
     return true;
@@ -116,12 +117,13 @@ static bool run_command(struct run *run, int argc, char **argv) {
 
 static bool start(struct run *run, int argc, char **argv) {
     const char *name = argc > 1 ? argv[1] : "";
+    run->settings.json = has_argument(argc, argv, "--json");
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) return help(run, argc - 2, argv + 2);
     if (strcmp(name, "--version") == 0 || strcmp(name, "version") == 0) {
+        run->settings.json = false;
         help_version();
         return true;
     }
-    run->settings.json = has_argument(argc, argv, "--json");
     if (argc < 2) {
         help_overview();
         return run_fail(run, GN_USAGE, "a command is missing, e.g. gnomon render SCENE -o FILE");

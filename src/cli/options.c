@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/wrap.h"
+
 enum kind {
     FLAG,       // bool
     COUNT,      // uint32_t, one more each time
@@ -29,7 +31,7 @@ struct option {
     uint32_t commands;      // COMMAND_* bits
     double low, high;
     const char *choices;    // separated by |
-    const char *help;       // a new line in it starts a new line on the screen
+    const char *help;
 };
 
 #define AT(field) offsetof(struct settings, field)
@@ -41,31 +43,31 @@ static const struct option options[] = {
     {"output", 'o', "FILE", TEXT, AT(output), COMMAND_RENDER, 0, 0, NULL,
      "write the picture here: .png (8 bit), .exr or .pfm (linear, fp32)"},
     {"output", 'o', "OUT.npy", TEXT, AT(output), COMMAND_TRACE, 0, 0, NULL,
-     "write the hits here: a structured array (t, u, v, object,\nprimitive, flags) of shape (N,)"},
+     "write the hits here: a structured array (t, u, v, object, primitive, flags) of shape (N,)"},
     {"output", 'o', "FILE", TEXT, AT(output), COMMAND_VERIFY, 0, 0, NULL,
-     "write the difference here as a picture in false colour: black is\nequal, the middle of the scale is the tolerance"},
+     "write the difference here as a picture in false colour: black is equal, the middle of the scale is the tolerance"},
     {"output", 'o', "FILE", TEXT, AT(output), COMMAND_COMPARE, 0, 0, NULL,
      "write the FLIP error here as a picture in false colour"},
     {"rays", 0, "IN.npy", TEXT, AT(rays), COMMAND_TRACE, 0, 0, NULL,
-     "read the rays here: float32, shape (N, 8), each row\nox oy oz tmin dx dy dz tmax"},
+     "read the rays here: float32, shape (N, 8), each row ox oy oz tmin dx dy dz tmax"},
     {"size", 0, "WxH", SIZE, AT(size), PICTURE | COMMAND_PLAN, 1, 65535, NULL,
      "pixels, e.g. 640x480 [the scene's]"},
-    {"spp", 0, "N", WHOLE, AT(spp), PICTURE | COMMAND_PLAN, 1, 1048576, NULL,
-     "samples per pixel, 1 to 1048576 [the scene's]"},
+    {"spp", 0, "N", WHOLE, AT(spp), PICTURE | COMMAND_PLAN, 1, 16777216, NULL,
+     "samples per pixel, 1 to 16777216 [the scene's]"},
     {"seed", 0, "N", WHOLE, AT(seed), PICTURE, 0, MOST_WHOLE, NULL,
      "of the random numbers, 0 to 4294967295 [0]"},
     {"accuracy", 0, "TIER", CHOICE, AT(accuracy), RAYS, 0, 0, "robust|fast|exact|fp64",
-     "how hits are decided: fast, robust, exact or fp64 [robust];\nexact and fp64 are planned"},
+     "how hits are decided: fast, robust, exact or fp64 [robust]; exact and fp64 are planned"},
     {"reference", 0, NULL, FLAG, AT(reference), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL,
      "on the CPU in fp64 with exact decisions instead of on a device"},
     {"disable", 0, "EFFECT", LIST, AT(disable), PICTURE | COMMAND_PLAN, 0, 0, NULL,
-     "leave an effect out; may be repeated, or a comma list\n(gnomon plan SCENE lists them)"},
+     "leave an effect out; may be repeated, or a comma list (gnomon plan SCENE lists them)"},
     {"no-prune", 0, NULL, FLAG, AT(no_prune), PICTURE | COMMAND_PLAN, 0, 0, NULL,
      "run every effect, whether the scene calls for it or not"},
     {"aov", 0, "LAYER", SET, AT(aovs), COMMAND_RENDER, 0, 0, "depth|normal|id",
-     "also write depth, normal or id; may be repeated, or a comma list.\nLayers of an .exr; beside a .png or .pfm: name.depth.png …"},
+     "also write depth, normal or id; may be repeated, or a comma list. Layers of an .exr; beside a .png or .pfm: name.depth.png …"},
     {"tile-pixels", 0, "N", WHOLE, AT(tile_pixels), PICTURE, 1, MOST_WHOLE, NULL,
-     "pixels of one piece of device work [measured]; the picture\ndoes not depend on it"},
+     "pixels of one piece of device work [measured]; the picture does not depend on it"},
     {"stats", 0, NULL, FLAG, AT(stats), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL,
      "print where the time went, and what was counted"},
     {"any", 0, NULL, FLAG, AT(any), COMMAND_TRACE, 0, 0, NULL,
@@ -73,17 +75,17 @@ static const struct option options[] = {
     {"repeat", 0, "N", WHOLE, AT(repeat), COMMAND_TRACE, 1, 1000000, NULL,
      "shoot the batch N times and report the median time [1]"},
     {"tolerance", 0, "E", REAL, AT(tolerance), COMMAND_VERIFY, 1e-12, 1e12, NULL,
-     "a pixel differs when a colour channel, in linear light, is off\nby more [1/255]"},
+     "a pixel differs when a colour channel, in linear light, is off by more [1/255]"},
     {"max-abs", 0, "E", REAL, AT(max_abs), COMMAND_COMPARE, 0, 1e300, NULL,
      "fail (exit 1) when a channel is off by more, in linear light"},
     {"max-flip", 0, "E", REAL, AT(max_flip), COMMAND_COMPARE, 0, 1, NULL,
      "fail (exit 1) when the mean FLIP error is larger, 0 to 1"},
     {"device", 0, "D", TEXT, AT(device), COMMAND_ALL, 0, 0, NULL,
-     "the Vulkan device: index, part of its name, uuid:…, cpu or gpu\n[$GNOMON_DEVICE, else a GPU if there is one, else the CPU]"},
+     "the Vulkan device: index, part of its name, uuid:…, cpu or gpu [$GNOMON_DEVICE, else a GPU if there is one, else the CPU]"},
     {"json", 0, NULL, FLAG, AT(json), COMMAND_ALL, 0, 0, NULL,
-     "one JSON object on standard output, everything else on\nstandard error"},
+     "one JSON object on standard output, everything else on standard error"},
     {"progress", 0, "MODE", CHOICE, AT(progress), COMMAND_ALL, 0, 0, "auto|bar|plain|none",
-     "auto, bar, plain or none [auto: a bar on a terminal, a line now\nand then elsewhere]"},
+     "auto, bar, plain or none [auto: a bar on a terminal, a line now and then elsewhere]"},
     {"threads", 0, "N", WHOLE, AT(threads), COMMAND_ALL, 1, 256, NULL,
      "CPU threads of gnomon's own work [one for each core]"},
     {"validate", 0, NULL, FLAG, AT(validate), COMMAND_ALL, 0, 0, NULL,
@@ -319,19 +321,14 @@ bool options_parse(struct settings *out, struct gn_error *error, int argc, char 
 
 // ------------------------------------------------------------------------------------------------------------------ help
 
-#define HELP_COLUMN 25
+#define HELP_COLUMN 26
 
 static void print_option(const struct option *option) {
     char left[64], letter[5] = "    ";
     if (option->letter) snprintf(letter, sizeof letter, "-%c, ", option->letter);
     snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name, option->value ? " " : "", option->value ? option->value : "");
-    printf("%-*s", HELP_COLUMN, left);
-    for (const char *line = option->help; *line;) {
-        int length = (int)strcspn(line, "\n");
-        if (line != option->help) printf("%*s", HELP_COLUMN, "");
-        printf(" %.*s\n", length, line);
-        line += length + (line[length] != 0);
-    }
+    printf("%s", left);
+    print_wrapped(option->help, (int)strlen(left), HELP_COLUMN);
 }
 
 void options_print(uint32_t command) {

@@ -14,6 +14,9 @@ struct pixel_error {
     double limits;              // worst, in units of the limit that holds at its value; +inf if something is not finite
 };
 
+// What a channel may be off where this is its right value.
+static double limit_at(double right, double tolerance) { return fabs(right) > 1 ? fmax(tolerance, VERIFY_RELATIVE * fabs(right)) : tolerance; }
+
 static struct pixel_error pixel_error(const float *device, const float *reference, double tolerance) {
     struct pixel_error error = {0};
     for (int c = 0; c < 3; c++) {
@@ -21,7 +24,7 @@ static struct pixel_error pixel_error(const float *device, const float *referenc
         if (!isfinite(off)) return (struct pixel_error){.limits = INFINITY};
         error.worst = fmax(error.worst, off);
         error.squares += off * off;
-        error.limits = fmax(error.limits, off / fmax(tolerance, VERIFY_RELATIVE * fabs(right)));
+        error.limits = fmax(error.limits, off / limit_at(right, tolerance));
     }
     return error;
 }

@@ -3,8 +3,8 @@
 // The rule. Both sides shoot the same rays and draw the same random numbers, so on a right device a pixel is off by the rounding of fp32 shading only,
 // some 1e-6. Where an edge, or a shadow's edge, passes within rounding of a sample, the two may decide differently, and the pixel is off by
 // anything. Hence two limits: a pixel differs when a channel is off by more than the tolerance (1/255 in linear light: one step of an 8-bit picture
-// without gamma; for values over 16, 2^-12 of the value, which fp32 shading keeps with room to spare), and few pixels may differ: 1 in 10 000, or 2 in
-// a small picture. A whole edge drawn wrongly, a missing shadow, a lost triangle or another random number is far more than that; so is
+// without gamma; for values over 1 at least 2^-12 of the value, which fp32 shading keeps with room to spare), and few pixels may differ: 1 in 10 000,
+// or 2 in a small picture. A whole edge drawn wrongly, a missing shadow, a lost triangle or another random number is far more than that; so is
 // one value that is not finite, which fails alone.
 #ifndef MEASURE_VERIFY_H
 #define MEASURE_VERIFY_H
