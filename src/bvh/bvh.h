@@ -27,15 +27,16 @@ struct bvh {
     uint32_t *order;            // a permutation of 0 … primitive_count-1
     uint32_t node_count, primitive_count;
     uint32_t depth;             // edges from the root to the deepest leaf
-    double sah_cost;            // relative to the root's area: 1 per node visit, 1 per primitive test
+    double sah_cost;            // Σ area over the root's area, 1 × for each inner node and 1 × for each primitive of a leaf; 0 for a flat root
 };
 
 struct bvh_params {
     uint32_t split_at;          // primitives from this number on are of the other kind
 };
 
-// Builds over boxes[0 … count). The same boxes give the same tree whatever the number of threads. GN_LIMIT when memory is missing.
-// Terminates within BVH_MAX_DEPTH for any input: coincident, huge (1e38), flat.
+// Builds over boxes[0 … count): min ≤ max, infinite bounds allowed, no NaN. The same boxes give the same tree whatever the number of threads.
+// Ends within BVH_MAX_DEPTH for any input: coincident, huge (1e38), flat. Takes up to 140 bytes per primitive, the result included.
+// GN_LIMIT when memory is missing or there are 2^31 primitives or more, GN_CANCELLED.
 bool bvh_build(struct bvh *out, struct context *ctx, const struct bvh_box *boxes, uint32_t count, const struct bvh_params *params);
 void bvh_finish(struct bvh *bvh);
 
