@@ -8,6 +8,7 @@
 #include "camera.glsl"
 #include "constants.glsl"
 #include "film.glsl"
+#include "pending.glsl"
 #include "phong.glsl"
 #include "ray.glsl"
 #include "sampler.glsl"
@@ -53,18 +54,35 @@ vec3 light_reflect(surface s, phong_material m, vec3 v, uint number, out vec3 po
     return light * phong_reflect(m, s.n, l, v, HAS_DIFFUSE, HAS_SPECULAR);
 }
 
-// One sample: the camera ray, and the shadow rays of what it hits. `steps` at 0 on return: the sample is not finished.
-film_sample shoot_sample(ray camera, inout int steps, inout uint rays) {
+// How a sample ended.
+#define SAMPLE_DONE 0u
+#define SAMPLE_OUT_OF_STEPS 1u
+#define SAMPLE_UNDECIDED 2u
+
+// One sample: the camera ray, and the shadow rays of what it hits. Only with SAMPLE_DONE is the result to be used.
+film_sample shoot_sample(ray camera, inout int steps, inout uint rays, inout pending_sample pending, out uint end) {
     film_sample result = film_sample(background(), vec3(0.0), 0.0, -1, -1);
     surface s;
     phong_material m;
     vec3 v = vec3(0.0), adds = vec3(0.0);
     uint light = 0u;            // the next one to look at
-    bool first = true, more = true;
+    uint number = 0u;           // of the ray in the sample
+    bool more = true;
     ray r = camera;
+    end = SAMPLE_DONE;
     do {
-        hit h = traverse(r, !first, args.root, steps);
-        rays++;
+        bool first = number == 0u;
+        hit h;
+        if (!pending_answer(pending, number, h)) {
+            search q = traverse(r, !first, args.root, steps);
+            h = q.best;
+            if (search_undecided(q, !first)) {
+                pending_ask(pending, r, !first, number);
+                end = SAMPLE_UNDECIDED;
+                return result;
+            }
+        }
+        number++;
         if (!first) {
             if (h.object < 0) result.radiance += adds;
         } else if (h.object >= 0) {
@@ -75,7 +93,6 @@ film_sample shoot_sample(ray camera, inout int steps, inout uint rays) {
         } else {
             light = args.light_count;
         }
-        first = false;
         more = false;
         while (HAS_LIGHT && !more && light < args.light_count && steps > 0) {
             steps--;
@@ -92,27 +109,43 @@ film_sample shoot_sample(ray camera, inout int steps, inout uint rays) {
         }
         if (HAS_LIGHT && !more && light < args.light_count) steps = 0;
     } while (more && steps > 0);
-    if (more) steps = 0;
+    rays += number;
+    if (more || steps <= 0) end = SAMPLE_OUT_OF_STEPS;
     return result;
 }
 
-void main() {
-    ivec2 at;
-    if (!find_pixel(at)) return;
-    film_pixel pixel = film_load(at);
-    uint before = pixel.done, nonfinite = pixel.nonfinite, rays = 0u;
+// Brings a pixel on to args.sample_end, as far as steps and decisions go. With RESOLVE: one sample only.
+void expose(inout film_pixel pixel, uvec2 position, inout pending_sample pending, inout uint rays) {
     int steps = int(MAX_STEPS);
-    uvec2 film_position = uvec2(at) + uvec2(0u, args.band_y);
-    while (pixel.done < args.sample_end && steps > 0) {
+    uint end = SAMPLE_DONE;
+    uint sample_end = RESOLVE ? pixel.done + 1u : args.sample_end;
+    while (pixel.done < sample_end && end == SAMPLE_DONE) {
+        film_sample result = shoot_sample(camera_ray(position, pixel.done), steps, rays, pending, end);
         steps--;
-        film_sample result = shoot_sample(camera_ray(film_position, pixel.done), steps, rays);
-        if (steps > 0) film_add(pixel, result);
+        if (end == SAMPLE_DONE) film_add(pixel, result);
     }
-    film_store(at, pixel);
+}
+
+void report(film_pixel before, film_pixel after, uint rays, bool asks) {
     atomicAdd(dispatch_status.rays, rays);
-    if (pixel.nonfinite != nonfinite) atomicAdd(dispatch_status.nonfinite, 1u);
-    if (pixel.done < args.sample_end) {
+    if (after.nonfinite != before.nonfinite) atomicAdd(dispatch_status.nonfinite, 1u);
+    if (asks) atomicAdd(dispatch_status.undecided, 1u);
+    uint pending = asks ? 1u : 0u; // a sample that the host brings to its end
+    if (after.done + pending < args.sample_end) {
         atomicAdd(dispatch_status.unfinished, 1u);
-        if (pixel.done == before) atomicAdd(dispatch_status.stuck, 1u);
+        if (after.done == before.done && !asks) atomicAdd(dispatch_status.stuck, 1u);
     }
+}
+
+void main() {
+    pending_sample pending;
+    ivec2 at;
+    if (!(RESOLVE ? pending_find(pending, at) : find_pixel(at))) return;
+    if (!RESOLVE) pending = pending_none();
+    film_pixel before = film_load(at), pixel = before;
+    uint rays = 0u;
+    expose(pixel, uvec2(at) + uvec2(0u, args.band_y), pending, rays);
+    film_store(at, pixel);
+    if (TIER == TIER_EXACT) pending_store(pending, at);
+    report(before, pixel, rays, pending.asks);
 }

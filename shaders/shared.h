@@ -23,15 +23,17 @@
 // How decisions are made. Each row is a value of the specialization constant TIER, a name, and one GLSL file tier_<name>.glsl.
 #define TIERS(X)                                                                 \
     X(0, FAST,   "fast",   "what a good plain renderer does")                    \
-    X(1, ROBUST, "robust", "watertight, error-bounded offsets, safe boxes")
+    X(1, ROBUST, "robust", "watertight, error-bounded offsets, safe boxes")      \
+    X(2, EXACT,  "exact",  "every decision as in exact arithmetic")
 
-#define TIER_COUNT 2
+#define TIER_COUNT 3
 
 // Numbers of the specialization constants that are no effects.
 #define CONSTANT_TIER       32
 #define CONSTANT_AOVS       33      // GN_AOV_* bits
 #define CONSTANT_MAX_STEPS  34      // loop iterations an invocation may spend before it gives up
 #define CONSTANT_ANY_HIT    35      // trace kernel: occlusion only
+#define CONSTANT_RESOLVE    36      // render kernel: goes on with the pending samples, with the answers to their questions
 
 // ------------------------------------------------------------------------------------------------------------ bindings
 #define BINDING_NODES       0       // node words
@@ -50,7 +52,8 @@
 #define BINDING_RAYS       13       // trace kernel: 2 word4 per ray (origin, tmin; direction, tmax)
 #define BINDING_HITS       14       // trace kernel: storage buffer, 6 words per ray, struct gn_hit
 #define BINDING_GLOBALS    15       // global words
-#define BINDING_COUNT      16
+#define BINDING_PENDING    16       // exact tier: storage buffer, struct pending
+#define BINDING_COUNT      17
 
 // Node: 4 word4. A node holds the boxes of its two children and what they are.
 //   0: left min.xyz,  left ref      1: left max.xyz,  right ref
@@ -78,6 +81,17 @@
 #define LIGHT_WORDS 2
 // Globals: 2 word4:  background.rgb, 0    ambient.rgb, 0
 #define GLOBAL_WORDS 2
+
+// Pending samples of the exact tier: those with a ray that the kernel's error bounds left undecided. The host decides the ray and the kernel does the sample again
+// with the answers it has, until it comes through. A record is PENDING_WORDS word4:
+//   0: pixel x, y in the band; answers so far; state PENDING_*      1: origin.xyz (device units), SELF_*
+//   2: direction.xyz, tmax                                          3: number of the ray in its sample, 1 for any hit, 0, 0
+//   4 + 2k: answer k: number of the ray, object, index, primitive (as a hit has them)      5 + 2k: t, u, v, 0
+#define PENDING_CAPACITY 1024
+#define PENDING_ANSWERS 63
+#define PENDING_WORDS (4 + 2 * PENDING_ANSWERS)
+#define PENDING_DONE 0u
+#define PENDING_ASKS 1u
 
 // Stack entries of a traversal: BVH_MAX_DEPTH + 2.
 #define STACK_SIZE 64

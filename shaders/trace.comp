@@ -38,10 +38,16 @@ void main() {
 
     int steps = int(MAX_STEPS);
     ray r = ray_make(o * args.scale, valid ? d : vec3(1.0), tmin * args.scale, tmax * args.scale, SELF_NONE);
-    hit h = traverse(r, ANY_HIT, valid && !empty ? args.root : REF_NONE, steps);
+    search q = traverse(r, ANY_HIT, valid && !empty ? args.root : REF_NONE, steps);
+    // An origin that lost bits on its way to device units is not the ray that was given.
+    bool lossy = TIER == TIER_EXACT && valid && !empty && (o * args.scale) / args.scale != o;
+    bool undecided = lossy || search_undecided(q, ANY_HIT);
+    hit h = q.best;
+    if (undecided) h = hit_none();
     float t = h.object < 0 ? INFINITY : h.t * r.t_scale / args.scale;
     if (ANY_HIT && h.object >= 0) h.object = 0;
-    store_hit(number, t, h, valid ? 0u : HIT_INVALID);
+    store_hit(number, t, h, (valid ? 0u : HIT_INVALID) | (undecided ? HIT_UNDECIDED : 0u));
+    if (undecided) atomicAdd(dispatch_status.undecided, 1u);
     if (h.object >= 0) atomicAdd(dispatch_status.hits, 1u);
     if (steps <= 0) atomicAdd(dispatch_status.stuck, 1u);
 }

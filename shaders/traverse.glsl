@@ -8,24 +8,63 @@
 #define TRAVERSE_GLSL
 #include "box.glsl"
 #include "constants.glsl"
+#include "tier_exact.glsl"
 #include "tier_fast.glsl"
 #include "tier_robust.glsl"
 #include "words.glsl"
 
-// Whether candidate c replaces the best hit: nearer, or as near with a lower object, then a lower primitive.
-bool is_better(float t, int object, int index, hit best) {
-    if (t != best.t) return t < best.t;
-    return object < best.object || (object == best.object && index < best.index);
+// The search so far. For tiers without error bounds lo = hi = best.t; in the exact tier best.t lies in [lo, hi], and `maybe` is where the nearest crossing that is
+// not certain may begin. A maybe never shortens the ray.
+struct search {
+    hit best;
+    float lo, hi, maybe;
+};
+
+search search_nothing() { return search(hit_none(), INFINITY, INFINITY, INFINITY); }
+
+// Whether something that could change the answer was left open.
+bool search_undecided(search q, bool any) {
+    if (TIER != TIER_EXACT || q.maybe == INFINITY) return false;
+    return any ? q.best.object < 0 : q.maybe <= q.hi;
 }
 
-void test_triangle(uint number, ray r, shear s, inout hit best) {
+// A crossing at t, as far as the tier knows. Equal t: the lower object, then the lower primitive.
+void consider(inout search q, ray r, hit c) {
+    bool inside = c.t > r.tmin && c.t < r.tmax;
+    bool lower = c.object < q.best.object || (c.object == q.best.object && c.index < q.best.index);
+    if (inside && (c.t < q.best.t || (c.t == q.best.t && lower))) {
+        q.best = c;
+        q.hi = c.t;
+    }
+}
+
+// A crossing in the exact tier. The bounds of the ray are sharp, save that a product with a power of two may have lost a denormal's bits.
+void consider_verdict(inout search q, ray r, verdict c, hit candidate) {
+    const float lost = 7.7e-34; // 2^-110
+    bool possible = c.hi > r.tmin - lost && c.lo < r.tmax + lost && c.lo <= q.hi && c.lo <= c.hi;
+    bool inside = c.certain && c.lo > r.tmin + lost && c.hi < r.tmax - lost;
+    if (possible && inside && c.hi < q.lo) {
+        q.best = candidate;
+        q.lo = c.lo;
+        q.hi = c.hi;
+    } else if (possible) {
+        q.maybe = min(q.maybe, c.lo);
+    }
+}
+
+void test_triangle(uint number, ray r, shear s, inout search q) {
     uvec4 w0 = triangle_word(TRIANGLE_WORDS * number);
     uvec4 w1 = triangle_word(TRIANGLE_WORDS * number + 1u);
     uvec4 w2 = triangle_word(TRIANGLE_WORDS * number + 2u);
     vec3 v0 = uintBitsToFloat(w0.xyz), v1 = uintBitsToFloat(w1.xyz), v2 = uintBitsToFloat(w2.xyz);
-    vec3 tuv = TIER == TIER_FAST ? triangle_fast(r.o, r.d, v0, v1, v2) : triangle_robust(r.o, s, v0, v1, v2);
-    bool inside = tuv.x > r.tmin && tuv.x < r.tmax && number != r.self;
-    if (inside && is_better(tuv.x, int(w0.w), int(w1.w), best)) best = hit(tuv.x, tuv.y, tuv.z, number, int(w0.w), int(w1.w));
+    if (number == r.self) return;
+    if (TIER == TIER_EXACT) {
+        verdict c = triangle_exact(r.o, s, v0, v1, v2);
+        consider_verdict(q, r, c, hit(c.tuv.x, c.tuv.y, c.tuv.z, number, int(w0.w), int(w1.w)));
+    } else {
+        vec3 tuv = TIER == TIER_FAST ? triangle_fast(r.o, r.d, v0, v1, v2) : triangle_robust(r.o, s, v0, v1, v2);
+        consider(q, r, hit(tuv.x, tuv.y, tuv.z, number, int(w0.w), int(w1.w)));
+    }
 }
 
 // A ray that starts on the sphere leaves its root at t = 0 out: the other one is 2 (l·d)/(d·d).
@@ -34,22 +73,37 @@ vec2 sphere_from_itself(ray r, vec3 center) {
     return vec2(-INFINITY, 2.0 * dot(l, r.d) / dot(r.d, r.d));
 }
 
-void test_sphere(uint number, ray r, inout hit best) {
+void test_sphere_exact(uint number, ray r, vec3 center, float radius, int object, inout search q) {
+    bool again = r.self == (number | SELF_SPHERE);
+    verdict c;
+    if (!again) {
+        c = sphere_exact(r.o, r.d, center, radius, -1.0);
+        consider_verdict(q, r, c, hit(c.tuv.x, 0.0, 0.0, number | SELF_SPHERE, object, 0));
+    }
+    if (again) c = sphere_exact_again(r.o, r.d, center);
+    else c = sphere_exact(r.o, r.d, center, radius, 1.0);
+    consider_verdict(q, r, c, hit(c.tuv.x, 0.0, 0.0, number | SELF_SPHERE, object, 0));
+}
+
+void test_sphere(uint number, ray r, inout search q) {
     uvec4 w0 = sphere_word(SPHERE_WORDS * number);
     uvec4 w1 = sphere_word(SPHERE_WORDS * number + 1u);
     vec3 center = uintBitsToFloat(w0.xyz);
     float radius = uintBitsToFloat(w0.w);
+    if (TIER == TIER_EXACT) {
+        test_sphere_exact(number, r, center, radius, int(w1.x), q);
+        return;
+    }
     vec2 roots = TIER == TIER_FAST ? sphere_fast(r.o, r.d, center, radius) : sphere_robust(r.o, r.d, center, radius);
     if (r.self == (number | SELF_SPHERE)) roots = sphere_from_itself(r, center);
     float t = roots.x > r.tmin ? roots.x : roots.y;
-    bool inside = t > r.tmin && t < r.tmax;
-    if (inside && is_better(t, int(w1.x), 0, best)) best = hit(t, 0.0, 0.0, number | SELF_SPHERE, int(w1.x), 0);
+    consider(q, r, hit(t, 0.0, 0.0, number | SELF_SPHERE, int(w1.x), 0));
 }
 
 // Shoots r. `any`: stops at the first hit. `steps` is counted down by every loop; at 0 the answer is not to be trusted. A driver may also end a loop
 // by itself (lavapipe before Mesa 23.1 does, after 65535 iterations of all lanes together): each loop's own condition is checked behind it.
-hit traverse(ray r, bool any, uint root, inout int steps) {
-    hit best = hit_none();
+search traverse(ray r, bool any, uint root, inout int steps) {
+    search q = search_nothing();
     slabs slab = slabs_make(r.o, r.d);
     shear s;
     if (TIER != TIER_FAST && HAS_TRIANGLES) s = shear_make(r.d);
@@ -65,7 +119,7 @@ hit traverse(ray r, bool any, uint root, inout int steps) {
             uvec4 w1 = node_word(NODE_WORDS * ref + 1u);
             uvec4 w2 = node_word(NODE_WORDS * ref + 2u);
             uvec4 w3 = node_word(NODE_WORDS * ref + 3u);
-            float limit = min(r.tmax, best.t);
+            float limit = min(r.tmax, q.hi);
             float left = box_enter(uintBitsToFloat(w0.xyz), uintBitsToFloat(w1.xyz), slab, r.tmin, limit);
             float right = box_enter(uintBitsToFloat(w2.xyz), uintBitsToFloat(w3.xyz), slab, r.tmin, limit);
             bool swap = right < left;
@@ -85,25 +139,25 @@ hit traverse(ray r, bool any, uint root, inout int steps) {
             uint end = first + ((ref >> REF_COUNT_SHIFT) & 15u) + 1u;
             if (HAS_TRIANGLES && (!HAS_SPHERES || (ref & REF_SPHERES) == 0u)) {
                 do {
-                    test_triangle(first, r, s, best);
+                    test_triangle(first, r, s, q);
                     first++;
                     steps--;
                 } while (first < end && steps > 0);
             }
             if (HAS_SPHERES && (!HAS_TRIANGLES || (ref & REF_SPHERES) != 0u)) {
                 do {
-                    test_sphere(first, r, best);
+                    test_sphere(first, r, q);
                     first++;
                     steps--;
                 } while (first < end && steps > 0);
             }
             if (first < end) steps = 0;
             top--;
-            ref = any && best.object >= 0 ? REF_NONE : stack[top];
+            ref = any && q.best.object >= 0 ? REF_NONE : stack[top];
         }
     } while (ref != REF_NONE && steps > 0);
     if (ref != REF_NONE) steps = 0;
-    return best;
+    return q;
 }
 
 #endif

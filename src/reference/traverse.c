@@ -59,9 +59,10 @@ static bool cross_triangle(struct crossing *out, const struct walk *walk, uint32
     struct scene_triangle triangle = scene_triangle_at(walk->world->scene, number);
     const float *const v[3] = {triangle.v[0], triangle.v[1], triangle.v[2]};
     if (!triangle_cross(out, walk->ray, v)) return false;
+    if (walk->from && walk->from->number == number) return false;
     if (walk->from && walk->from->v[0]) {
         const float *const own[3] = {walk->from->v[0], walk->from->v[1], walk->from->v[2]};
-        if (walk->from->number == number || triangle_in_plane(own, v)) return false;
+        if (triangle_in_plane(own, v)) return false;
     }
     out->object = triangle.object;
     out->primitive = triangle.primitive;
@@ -124,8 +125,10 @@ static struct walk walk_make(const struct ref_world *world, struct ref_ray *ray,
     return walk;
 }
 
-bool closest_hit(struct crossing *out, const struct ref_world *world, struct ref_ray *ray) {
-    struct walk walk = walk_make(world, ray, NULL, false);
+bool closest_hit(struct crossing *out, const struct ref_world *world, struct ref_ray *ray) { return closest_hit_from(out, world, ray, NULL); }
+
+bool closest_hit_from(struct crossing *out, const struct ref_world *world, struct ref_ray *ray, const struct crossing *from) {
+    struct walk walk = walk_make(world, ray, from, false);
     walk_down(&walk);
     *out = walk.best;
     return walk.found;

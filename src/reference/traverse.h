@@ -19,8 +19,11 @@ struct ref_world ref_world_make(const struct scene *scene, const struct bvh *bvh
 // The crossing with the smallest t; of equal ones that with the lowest object, then the lowest primitive.
 bool closest_hit(struct crossing *out, const struct ref_world *world, struct ref_ray *ray);
 
+// The same for a ray that starts on a primitive, as below.
+bool closest_hit_from(struct crossing *out, const struct ref_world *world, struct ref_ray *ray, const struct crossing *from);
+
 // Whether there is any crossing. A ray that starts on a primitive leaves it out: `from` (or NULL) says which. A triangle is left out with all that lies in
-// its plane, a sphere with the one crossing at the start.
+// its plane (or alone, if `from` has its number but not its vertices), a sphere with the one crossing at the start.
 bool any_hit(const struct ref_world *world, struct ref_ray *ray, const struct crossing *from);
 
 #endif

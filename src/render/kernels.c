@@ -14,13 +14,14 @@ static const struct embedded KERNELS[] = {
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,
                         const struct kernel_specialization *specialization, const struct kernel_binding *bindings, size_t binding_count,
                         uint32_t push_size) {
-    struct kernel_constant constants[EFFECT_COUNT + 4];
+    struct kernel_constant constants[EFFECT_COUNT + 5];
     size_t count = 0;
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) constants[count++] = (struct kernel_constant){i, specialization->effects >> i & 1};
     constants[count++] = (struct kernel_constant){CONSTANT_TIER, specialization->tier};
     constants[count++] = (struct kernel_constant){CONSTANT_AOVS, specialization->aovs};
     constants[count++] = (struct kernel_constant){CONSTANT_MAX_STEPS, device->max_loop_steps};
     constants[count++] = (struct kernel_constant){CONSTANT_ANY_HIT, specialization->any_hit};
+    constants[count++] = (struct kernel_constant){CONSTANT_RESOLVE, specialization->resolve};
     struct kernel_params params = {
         .name = KERNELS[name].name, .spirv = KERNELS[name].spirv, .spirv_size = KERNELS[name].size,
         .constants = constants, .constant_count = count, .bindings = bindings, .binding_count = binding_count, .push_size = push_size,

@@ -11,6 +11,7 @@ struct kernel_specialization {
     uint32_t effects;       // EFFECT_* bits; what is absent is compiled out
     uint32_t aovs;          // GN_AOV_* bits
     bool any_hit;           // trace kernel: occlusion only
+    bool resolve;           // render kernel: over the pending samples of the exact tier
 };
 
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,

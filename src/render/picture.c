@@ -6,12 +6,14 @@
 #include "base/clock.h"
 #include "render/kernels.h"
 #include "render/camera.h"
+#include "render/pending.h"
 #include "render/pieces.h"
 #include "render/render.h"
 #include "render/upload.h"
 
 #define BAND_PIXELS (4u << 20)      // of the film images: 64 MiB each, whatever the picture's size
 #define CHUNK_SAMPLES 16            // samples a pixel gets in one dispatch, at most
+#define CHUNK_SAMPLES_EXACT 1       // an undecided sample holds up those behind it
 
 struct pass {
     struct context *ctx;
@@ -20,8 +22,13 @@ struct pass {
     struct device_scene ds;
     struct storage_image film, residue, shade, id;
     struct buffer status;
+    struct kernel_specialization specialization;
+    struct kernel_binding bindings[BINDING_COUNT];
+    size_t binding_count;
     struct kernel kernel;
     struct render_args args;
+    struct pending pending;
+    struct pending_work pending_work;
     struct pieces pieces;
     struct render_film *out;
     uint32_t band_rows;             // of a full band
@@ -50,15 +57,30 @@ static bool make_status(struct buffer *status, struct context *ctx, struct devic
 }
 
 static bool make_kernel(struct pass *p) {
-    struct kernel_binding bindings[BINDING_COUNT];
-    size_t count = device_scene_bindings(&p->ds, bindings, true);
-    bindings[count++] = (struct kernel_binding){BINDING_FILM, NULL, &p->film};
-    bindings[count++] = (struct kernel_binding){BINDING_RESIDUE, NULL, &p->residue};
-    bindings[count++] = (struct kernel_binding){BINDING_AOV_SHADE, NULL, &p->shade};
-    bindings[count++] = (struct kernel_binding){BINDING_AOV_ID, NULL, &p->id};
-    bindings[count++] = (struct kernel_binding){BINDING_STATUS, &p->status, NULL};
-    struct kernel_specialization constants = {.tier = p->params->tier, .effects = p->params->effects, .aovs = p->params->aovs};
-    return render_kernel_init(&p->kernel, p->ctx, p->device, KERNEL_RENDER, &constants, bindings, count, sizeof(struct render_args));
+    p->binding_count = device_scene_bindings(&p->ds, p->bindings, true);
+    struct kernel_binding others[] = {
+        {BINDING_FILM, NULL, &p->film},      {BINDING_RESIDUE, NULL, &p->residue}, {BINDING_AOV_SHADE, NULL, &p->shade},
+        {BINDING_AOV_ID, NULL, &p->id},      {BINDING_STATUS, &p->status, NULL},   {BINDING_PENDING, &p->pending.buffer, NULL},
+    };
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) p->bindings[p->binding_count++] = others[i];
+    p->specialization = (struct kernel_specialization){.tier = p->params->tier, .effects = p->params->effects, .aovs = p->params->aovs};
+    return render_kernel_init(&p->kernel, p->ctx, p->device, KERNEL_RENDER, &p->specialization, p->bindings, p->binding_count,
+                              sizeof(struct render_args));
+}
+
+static void make_pending_work(struct pass *p, const struct scene *scene, const struct bvh *bvh) {
+    p->pending_work = (struct pending_work){
+        .ctx = p->ctx,
+        .device = p->device,
+        .scene = scene,
+        .bvh = bvh,
+        .ds = &p->ds,
+        .specialization = &p->specialization,
+        .bindings = p->bindings,
+        .binding_count = p->binding_count,
+        .args = &p->args,
+        .status = p->status.map,
+    };
 }
 
 static vec4 vec4_of(const float v[3], float w) { return (vec4){v[0], v[1], v[2], w}; }
@@ -89,12 +111,10 @@ static bool warm_up(struct pass *p) {
     return kernel_run(&p->kernel, p->ctx, p->device, &p->args, 1, NULL);
 }
 
-static bool count_status(struct pass *p, bool *unfinished) {
-    const struct status *status = p->status.map;
+static bool count_status(struct pass *p, const struct status *status) {
     p->out->rays += status->rays;
     p->out->nonfinite_pixels += status->nonfinite;
     p->out->undecided_rays += status->undecided;
-    *unfinished = status->unfinished > 0;
     if (status->stuck == 0) return true;
     return fail(p->ctx, GN_LIMIT,
                 "%u pixels need more than %u traversal steps for one sample, the most that this device's driver allows; "
@@ -110,14 +130,19 @@ static bool report_progress(struct pass *p) {
 
 // One piece, dispatched until every pixel of it has its samples.
 static bool run_piece(struct pass *p, uint32_t groups) {
-    bool unfinished = true;
-    while (unfinished) {
+    struct status *status = p->status.map, sums;
+    bool again;
+    do {
         double seconds;
-        *(struct status *)p->status.map = (struct status){0};
+        *status = (struct status){0};
+        pending_clear(&p->pending);
         if (!kernel_run(&p->kernel, p->ctx, p->device, &p->args, groups, &seconds)) return false;
         pieces_learn(&p->pieces, groups, seconds);
-        if (!count_status(p, &unfinished) || !report_progress(p)) return false;
-    }
+        sums = *status;
+        again = sums.unfinished > 0 || pending_overflowed(&p->pending);
+        if (!pending_resolve(&p->pending, &p->pending_work, &sums)) return false;
+        if (!count_status(p, &sums) || !report_progress(p)) return false;
+    } while (again);
     return true;
 }
 
@@ -210,9 +235,9 @@ static bool render_band(struct pass *p, uint32_t band_y) {
     p->args.band_rows = rows;
     p->args.tile_count = tiles_of(p->params->width, rows);
     p->args.tile_stride = tile_stride(p->args.tile_count);
-    uint32_t spp = p->params->spp;
-    for (uint32_t begin = 0; begin < spp; begin += CHUNK_SAMPLES) {
-        uint32_t end = spp - begin < CHUNK_SAMPLES ? spp : begin + CHUNK_SAMPLES;
+    uint32_t spp = p->params->spp, chunk = p->params->tier == TIER_EXACT ? CHUNK_SAMPLES_EXACT : CHUNK_SAMPLES;
+    for (uint32_t begin = 0; begin < spp; begin += chunk) {
+        uint32_t end = spp - begin < chunk ? spp : begin + chunk;
         if (!run_chunk(p, begin, end)) return false;
     }
     return read_band(p, band_y, rows);
@@ -241,10 +266,13 @@ static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh
     double start = clock_seconds();
     if (!device_scene_init(&p->ds, p->ctx, p->device, scene, bvh, p->params->effects, true)) return false;
     if (!make_film(p) || !make_status(&p->status, p->ctx, p->device)) return false;
+    if (!pending_init(&p->pending, p->ctx, p->device, p->params->tier == TIER_EXACT)) return false;
     out->upload_ms = clock_ms_since(start);
     start = clock_seconds();
     make_args(p, scene);
-    if (!make_kernel(p) || !warm_up(p)) return false;
+    if (!make_kernel(p)) return false;
+    make_pending_work(p, scene, bvh);
+    if (!warm_up(p)) return false;
     out->pipeline_ms = clock_ms_since(start);
     start = clock_seconds();
     if (!render_bands(p)) return false;
@@ -253,6 +281,7 @@ static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh
 }
 
 static void pass_finish(struct pass *p) {
+    pending_finish(&p->pending, p->device);
     kernel_finish(&p->kernel, p->device);
     buffer_finish(&p->status, p->device);
     storage_image_finish(&p->film, p->device);

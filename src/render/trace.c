@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "reference/resolve.h"
 #include "render/kernels.h"
 #include "render/pieces.h"
 #include "render/render.h"
@@ -92,6 +93,36 @@ static double median(double *values, size_t count) {
     return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
+// Decides by exact arithmetic what the kernel left open; the time counts as shooting.
+static bool resolve_undecided(struct batch *b, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays, struct gn_hit *hits,
+                              size_t count) {
+    size_t open = 0;
+    double start = clock_seconds();
+    for (size_t i = 0; i < count; i++) open += hits[i].flags & HIT_UNDECIDED ? 1 : 0;
+    struct resolve_ray *questions = array_alloc(b->ctx, open, sizeof *questions, "undecided rays");
+    struct resolve_answer *answers = array_alloc(b->ctx, open, sizeof *answers, "undecided rays");
+    bool ok = questions && answers;
+    for (size_t i = 0, k = 0; ok && i < count; i++) {
+        if (!(hits[i].flags & HIT_UNDECIDED)) continue;
+        struct resolve_ray *q = &questions[k++];
+        *q = (struct resolve_ray){.tmin = rays[i].tmin, .tmax = rays[i].tmax, .self = RESOLVE_NO_SELF, .any = b->params->any};
+        memcpy(q->o, rays[i].origin, sizeof q->o);
+        memcpy(q->d, rays[i].direction, sizeof q->d);
+    }
+    struct ref_world world = ref_world_make(scene, bvh, b->params->effects);
+    ok = ok && resolve_rays(answers, b->ctx, &world, questions, open);
+    for (size_t i = 0, k = 0; ok && i < count; i++) {
+        if (!(hits[i].flags & HIT_UNDECIDED)) continue;
+        hits[i] = answers[k++].hit;
+        hits[i].flags |= HIT_UNDECIDED;
+        b->stats->hits += hits[i].object >= 0;
+    }
+    free(questions);
+    free(answers);
+    for (uint32_t i = 0; i < b->params->repeat; i++) b->times[i] += clock_seconds() - start;
+    return ok;
+}
+
 static bool run_batch(struct batch *b, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays, struct gn_hit *hits, size_t count) {
     size_t portion = count < PORTION_RAYS ? count : PORTION_RAYS;
     double start = clock_seconds();
@@ -105,6 +136,7 @@ static bool run_batch(struct batch *b, const struct scene *scene, const struct b
         size_t size = count - begin < portion ? count - begin : portion;
         if (!shoot_portion(b, rays, hits, begin, size, count)) return false;
     }
+    if (b->params->tier == TIER_EXACT && !resolve_undecided(b, scene, bvh, rays, hits, count)) return false;
     b->stats->trace_ms = 1e3 * median(b->times, b->params->repeat ? b->params->repeat : 1);
     return true;
 }
