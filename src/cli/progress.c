@@ -9,6 +9,7 @@
 #include "base/clock.h"
 
 #define BAR_MOST 40     // cells
+#define HEARTBEAT 2.0   // seconds for which a report without a fraction says no more than that the last one still holds
 
 static bool says_utf8(void) {
     static const char *const names[] = {"LC_ALL", "LC_CTYPE", "LANG"};
@@ -53,7 +54,7 @@ static void draw_bar(const struct progress_view *view, const char *stage, double
     snprintf(head, sizeof head, "%-9.20s", stage);
     if (fraction >= 0) snprintf(tail, sizeof tail, " %3.0f %%  %s", 100 * fraction, left);
     int room = terminal_width() - 1 - (int)strlen(head) - (int)strlen(tail) - 2;
-    int width = room > BAR_MOST ? BAR_MOST : room < 5 || !(fraction >= 0) ? 0 : room, used = 0;
+    int width = room < 5 || !(fraction >= 0) ? 0 : room < BAR_MOST ? room : BAR_MOST, used = 0;
     for (int i = 0; i < width; i++) {
         bool full = i < (int)(fraction * width + 0.5);
         used += snprintf(cells + used, sizeof cells - (size_t)used, "%s", view->unicode ? full ? "█" : "░" : full ? "#" : ".");
@@ -68,6 +69,8 @@ static void draw_bar(const struct progress_view *view, const char *stage, double
 void progress_show(struct progress_view *view, const struct gn_progress *progress) {
     if (view->mode == PROGRESS_NONE) return;
     double now = clock_seconds();
+    if (progress->fraction >= 0) view->known = now;
+    else if (now - view->known < HEARTBEAT) return;
     if (now - view->started < view->first || now - view->last < view->interval) return;
     view->last = now;
     char left[48];

@@ -9,6 +9,7 @@ struct progress_view {
     bool unicode;               // the terminal takes it
     bool drawn;                 // a bar stands on the current line
     double started, last;       // clock_seconds() of the start and of the last drawing
+    double known;               // the same of the last report that knew its fraction
     double first, interval;     // seconds before the first drawing, and between two
 };
 
