@@ -29,7 +29,10 @@ static void format_bytes(char out[64], VkDeviceSize bytes) {
     static const char *const units[] = {"bytes", "kB", "MB", "GB", "TB", "PB", "EB"};
     double value = (double)bytes;
     int unit = 0;
-    for (; value >= 1000; value /= 1000) ++unit;
+    while (value >= 1000) {
+        value /= 1000;
+        ++unit;
+    }
     snprintf(out, 64, "%.*f %s (%" PRIu64 " bytes", unit ? 2 : 0, value, units[unit], bytes);
 }
 
@@ -101,6 +104,15 @@ static VkResult try_wish(struct allocation *out, struct device *device, const Vk
     return result;
 }
 
+static bool refuse(struct context *ctx, struct device *device, const struct allocation_params *params) {
+    char needed[64], left[64];
+    memory_budget_update(device);
+    format_bytes(needed, params->requirements.size);
+    format_bytes(left, difference(device->memory_budget, device->memory_used));
+    return fail(ctx, GN_LIMIT, "%s '%s' needs %s), but vkAllocateMemory found no room for it; free are %s)", params->what, params->name,
+                needed, left);
+}
+
 static bool is_mapped(VkMemoryPropertyFlags wish) { return (wish & HOST) == HOST; }
 
 bool allocation_init(struct allocation *out, struct context *ctx, struct device *device, const struct allocation_params *params) {
@@ -111,11 +123,7 @@ bool allocation_init(struct allocation *out, struct context *ctx, struct device 
     VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
     int wish = 0;
     for (; wish < WISHES && result != VK_SUCCESS; ++wish) result = try_wish(out, device, &params->requirements, wishes[wish]);
-    if (result != VK_SUCCESS) {
-        memory_budget_update(device);
-        return limit_fail(ctx, params->what, params->name, bytes, difference(device->memory_budget, device->memory_used),
-                          "its free memory; vkAllocateMemory failed");
-    }
+    if (result != VK_SUCCESS) return refuse(ctx, device, params);
     out->bytes = bytes;
     device->memory_used += bytes;
     if (!is_mapped(wishes[wish - 1])) return true;

@@ -88,7 +88,7 @@ static bool copy(struct buffer *to, VkDeviceSize to_offset, struct buffer *from,
     if (!commands_begin(device, ctx)) return false;
     vkCmdCopyBuffer(device->commands, from->handle, to->handle, 1, &(VkBufferCopy){from_offset, to_offset, size});
     commands_barrier(device, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
-    return commands_run(device, ctx, to->kind == BUFFER_STAGING ? from->name : to->name, device->dispatch_limit);
+    return commands_run(device, ctx, "buffer", to->kind == BUFFER_STAGING ? from->name : to->name, device->dispatch_limit);
 }
 
 // Bytes of a piece: as many as the staging buffer holds of `granularity` each.

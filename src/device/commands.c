@@ -70,32 +70,35 @@ void commands_barrier(struct device *device, VkPipelineStageFlags stage, VkAcces
                          0, NULL, 0, NULL);
 }
 
-static bool give_up(struct device *device, struct context *ctx, const char *what, double limit) {
+static bool give_up(struct device *device, struct context *ctx, const char *kind, const char *name, double limit) {
     device->lost = true;
     return fail(ctx, GN_DEVICE_LOST,
-                "%s: the device '%s' did not answer within %.3g s and is given up. What may help: smaller pieces of work (tiles), "
+                "%s '%s': the device '%s' did not answer within %.3g s and is given up. What may help: smaller pieces of work (tiles), "
                 "an empty shader cache (set MESA_SHADER_CACHE_DIR to a new folder), a newer driver (this one: %s)",
-                what, device->info.name, limit, device->info.driver);
+                kind, name, device->info.name, limit, device->info.driver);
 }
 
-static bool wait_for_fence(struct device *device, struct context *ctx, const char *what, double limit) {
+static bool wait_for_fence(struct device *device, struct context *ctx, const char *kind, const char *name, double limit) {
     const double start = clock_seconds();
     double end = start + limit;
     bool cancelled = false;
     for (;;) {
         const VkResult result = vkWaitForFences(device->handle, 1, &device->fence, VK_TRUE, SLICE_NANOSECONDS);
         if (result == VK_SUCCESS) return !cancelled;
-        if (result != VK_TIMEOUT) return device_fail(device, ctx, GN_DEVICE_LOST, "vkWaitForFences", result);
+        if (result != VK_TIMEOUT) {
+            device->lost = true;
+            return device_fail(device, ctx, GN_DEVICE_LOST, "vkWaitForFences", result);
+        }
         const double now = clock_seconds();
         if (!cancelled && !progress(ctx, "device", -1, -1)) {
             cancelled = true;
             end = now + CANCEL_GRACE_SECONDS < end ? now + CANCEL_GRACE_SECONDS : end;
         }
-        if (now >= end) return give_up(device, ctx, what, limit);
+        if (now >= end) return give_up(device, ctx, kind, name, limit);
     }
 }
 
-bool commands_run(struct device *device, struct context *ctx, const char *what, double limit) {
+bool commands_run(struct device *device, struct context *ctx, const char *kind, const char *name, double limit) {
     VkResult result = vkEndCommandBuffer(device->commands);
     if (result != VK_SUCCESS) return device_fail(device, ctx, GN_INTERNAL, "vkEndCommandBuffer", result);
     result = vkResetFences(device->handle, 1, &device->fence);
@@ -103,5 +106,5 @@ bool commands_run(struct device *device, struct context *ctx, const char *what, 
     const VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &device->commands};
     result = vkQueueSubmit(device->queue, 1, &submit, device->fence);
     if (result != VK_SUCCESS) return device_fail(device, ctx, GN_INTERNAL, "vkQueueSubmit", result);
-    return wait_for_fence(device, ctx, what, limit);
+    return wait_for_fence(device, ctx, kind, name, limit);
 }

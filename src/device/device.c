@@ -37,7 +37,7 @@ static const struct candidate *choose(struct context *ctx, const struct candidat
     if (chosen >= 0 && candidates[chosen].info.usable) return candidates + chosen;
     format_devices(list, sizeof list, candidates, count);
     if (count == 0) {
-        fail(ctx, GN_NO_DEVICE, "no Vulkan device was found; drivers that run here may be missing: " NO_DRIVER_HINT);
+        fail(ctx, GN_NO_DEVICE, "no Vulkan device was found, only drivers for others; " NO_DRIVER_HINT);
     } else if (chosen >= 0) {
         fail(ctx, GN_NO_DEVICE, "the device '%s' cannot be used: %s", candidates[chosen].info.name, candidates[chosen].info.reason);
     } else if (!selector || !*selector) {

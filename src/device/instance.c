@@ -69,8 +69,8 @@ static VkResult open_instance(struct device *device, struct context *ctx, bool v
     }
     if (result == VK_ERROR_EXTENSION_NOT_PRESENT) result = try_instance(device, false, validate);
     if (result == VK_ERROR_EXTENSION_NOT_PRESENT && validate) {
-        notify(ctx, GN_LEVEL_WARNING, "the Vulkan validation layer is too old; going on without it");
-        result = try_instance(device, true, validate = false);
+        notify(ctx, GN_LEVEL_WARNING, "the Vulkan validation layer lacks what is needed here; going on without it");
+        result = try_instance(device, false, validate = false);
     }
     device->validating = validate && result == VK_SUCCESS;
     return result;

@@ -196,10 +196,9 @@ bool kernel_run(struct kernel *kernel, struct context *ctx, struct device *devic
     if (groups > most) return fail(ctx, GN_INTERNAL, "kernel '%s': %u workgroups are more than %u", kernel->name, groups, most);
     if (!commands_begin(device, ctx)) return false;
     record(kernel, device, push, groups);
-    char what[96];
-    snprintf(what, sizeof what, "kernel '%.64s'", kernel->name);
     const double start = clock_seconds();
-    if (!commands_run(device, ctx, what, kernel->warm ? device->dispatch_limit : device->first_dispatch_limit)) return false;
+    if (!commands_run(device, ctx, "kernel", kernel->name, kernel->warm ? device->dispatch_limit : device->first_dispatch_limit))
+        return false;
     if (seconds) *seconds = elapsed(device, clock_seconds() - start);
     if (groups) kernel->warm = true;
     return true;

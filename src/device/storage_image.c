@@ -85,7 +85,7 @@ static bool zero(struct storage_image *image, struct context *ctx, struct device
     if (is_new) record_transition(image, device);
     vkCmdClearColorImage(device->commands, image->handle, VK_IMAGE_LAYOUT_GENERAL, &(VkClearColorValue){{0}}, 1, &WHOLE);
     commands_barrier(device, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
-    return commands_run(device, ctx, image->name, device->dispatch_limit);
+    return commands_run(device, ctx, "image", image->name, device->dispatch_limit);
 }
 
 bool storage_image_init(struct storage_image *out, struct context *ctx, struct device *device, const char *name, VkFormat format,
@@ -123,7 +123,7 @@ static bool download_rows(struct storage_image *image, struct context *ctx, stru
     };
     vkCmdCopyImageToBuffer(device->commands, image->handle, VK_IMAGE_LAYOUT_GENERAL, staging->handle, 1, &region);
     commands_barrier(device, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
-    return commands_run(device, ctx, image->name, device->dispatch_limit);
+    return commands_run(device, ctx, "image", image->name, device->dispatch_limit);
 }
 
 bool storage_image_download(struct storage_image *image, struct context *ctx, struct device *device, uint32_t rows, void *to) {
