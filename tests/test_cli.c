@@ -78,7 +78,7 @@ static const struct { const char *words; int code; const char *says; } faults[] 
     {"render scene.json -o a.png --seed -1", 2, "expected a whole number from 0"},
     {"render scene.json -o a.png --threads 0", 2, "expected a whole number from 1 to 256"},
     {"render scene.json -o a.png --accuracy best", 2, "expected one of robust|fast|exact|fp64"},
-    {"render scene.json -o a.png --accuracy exact", 2, "accuracy 'exact' is not available in this version; there is: fast, robust"},
+    {"render scene.json -o a.png --accuracy fp64", 2, "accuracy 'fp64' is not available in this version; there is: fast, robust"},
     {"render scene.json -o a.png --aov depth,colour", 2, "expected a comma list of depth|normal|id"},
     {"render scene.json -o a.png --aov depth,", 2, "expected a comma list"},
     {"render scene.json -o a.png --progress fast", 2, "expected one of auto|bar|plain|none"},

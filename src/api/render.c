@@ -26,7 +26,7 @@ static const struct { uint32_t tier; const char *name; } tiers[] = {
 bool tier_of_accuracy(uint32_t *tier, const char **name, struct context *ctx, enum gn_accuracy accuracy) {
     if (accuracy < 0 || accuracy >= GN_ACCURACY_COUNT) return fail(ctx, GN_USAGE, "there is no accuracy number %d", (int)accuracy);
     char there[128] = "";
-    for (uint32_t i = 0; i < TIER_COUNT; i++) {
+    for (uint32_t i = 0; i < sizeof tiers / sizeof *tiers; i++) {
         if (strcmp(tiers[i].name, accuracy_names[accuracy]) == 0) {
             *tier = tiers[i].tier, *name = tiers[i].name;
             return true;
