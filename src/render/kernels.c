@@ -2,6 +2,7 @@
 
 #include "kernels/render.h"
 #include "kernels/trace.h"
+#include "kernels/trace_fp64.h"
 #include "shaders/shared.h"
 
 struct embedded { const char *name; const uint32_t *spirv; size_t size; };
@@ -9,6 +10,7 @@ struct embedded { const char *name; const uint32_t *spirv; size_t size; };
 static const struct embedded KERNELS[] = {
     [KERNEL_RENDER] = {"render", kernel_render, sizeof kernel_render},
     [KERNEL_TRACE] = {"trace", kernel_trace, sizeof kernel_trace},
+    [KERNEL_TRACE_FP64] = {"trace_fp64", kernel_trace_fp64, sizeof kernel_trace_fp64},
 };
 
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,

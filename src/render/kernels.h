@@ -4,7 +4,8 @@
 
 #include "device/kernel.h"
 
-enum kernel_name { KERNEL_RENDER, KERNEL_TRACE };
+// KERNEL_TRACE_FP64 needs a device with doubles.
+enum kernel_name { KERNEL_RENDER, KERNEL_TRACE, KERNEL_TRACE_FP64 };
 
 struct kernel_specialization {
     uint32_t tier;          // TIER_*

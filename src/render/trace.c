@@ -38,7 +38,8 @@ static bool make_kernel(struct batch *b) {
     bindings[count++] = (struct kernel_binding){BINDING_HITS, &b->hits, NULL};
     bindings[count++] = (struct kernel_binding){BINDING_STATUS, &b->status, NULL};
     struct kernel_specialization constants = {.tier = b->params->tier, .effects = b->params->effects, .any_hit = b->params->any};
-    return render_kernel_init(&b->kernel, b->ctx, b->device, KERNEL_TRACE, &constants, bindings, count, sizeof(struct trace_args));
+    enum kernel_name name = b->params->tier == TIER_EXACT && b->device->has_fp64 ? KERNEL_TRACE_FP64 : KERNEL_TRACE;
+    return render_kernel_init(&b->kernel, b->ctx, b->device, name, &constants, bindings, count, sizeof(struct trace_args));
 }
 
 static bool dispatch(struct batch *b, struct trace_args *args, uint32_t groups, double *seconds) {
