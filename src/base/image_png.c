@@ -1,6 +1,7 @@
 // PNG through libspng: 8 bits written, everything that PNG knows read. After the PNG Specification, third edition.
 #include <spng.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/image_codec.h"
 #include "base/threads.h"
@@ -101,6 +102,14 @@ static void expand_16bit(struct image *out, const uint16_t *codes, enum transfer
         }
 }
 
+// Whether the last chunk is there, checksum and all: libspng does not read so far, and a file cut there would pass.
+static bool has_end(const struct file_bytes *bytes) {
+    static const char end[] = "\0\0\0\0IEND\xae\x42\x60\x82";
+    for (size_t at = bytes->size; at-- > 0;)
+        if (bytes->size - at >= sizeof end - 1 && memcmp(bytes->data + at, end, sizeof end - 1) == 0) return true;
+    return false;
+}
+
 // Decodes to 8-bit RGB, or 16-bit RGBA where the file has 16 bits, and reads on to the end of the file, so that a truncated one is noticed.
 static int png_decode_pixels(spng_ctx *png, int format, void *pixels, size_t size) {
     int error = spng_decode_image(png, pixels, size, format, 0);
@@ -109,7 +118,7 @@ static int png_decode_pixels(spng_ctx *png, int format, void *pixels, size_t siz
 
 static bool png_decode(spng_ctx *png, struct image *out, struct context *ctx, const char *path, const struct file_bytes *bytes) {
     struct spng_ihdr ihdr;
-    int error = spng_set_png_buffer(png, bytes->data, bytes->size);
+    int error = has_end(bytes) ? spng_set_png_buffer(png, bytes->data, bytes->size) : SPNG_IO_EOF;
     if (!error) error = spng_get_ihdr(png, &ihdr);
     if (error) return fail(ctx, GN_IO, "%s: is not a valid PNG file: %s", path, spng_strerror(error));
     if (!image_init_announced(out, ctx, path, ihdr.width, ihdr.height, bytes->size, MOST_PIXELS_PER_BYTE)) return false;
