@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "device/machine_memory.h"
 #include "reference/reference.h"
 #include "render/render.h"
 
@@ -59,6 +60,16 @@ bool job_make(struct job *out, struct context *ctx, const struct gn_scene *scene
                      &(struct plan_params){.spp = out->spp, .disable = params->disable, .no_prune = params->no_prune});
 }
 
+// Memory is handed out before it is there, so what a picture will take is held against what the machine has; the kernel would end the
+// process instead. The 3 bytes are the codes of a PNG.
+static bool picture_fits(const struct job *job, struct context *ctx) {
+    uint32_t channels = 3 + (job->aovs & GN_AOV_DEPTH ? 1 : 0) + (job->aovs & GN_AOV_NORMAL ? 3 : 0) + (job->aovs & GN_AOV_ID ? 2 : 0);
+    uint64_t needed = (uint64_t)job->width * job->height * (channels * sizeof(float) + 3), left = machine_memory_free();
+    if (needed <= left) return true;
+    return fail(ctx, GN_LIMIT, "a picture of %u × %u pixels needs %.1f GB of memory, of which %.1f GB is free", job->width, job->height,
+                1e-9 * (double)needed, 1e-9 * (double)left);
+}
+
 static bool render_on_device(struct gn_picture *picture, struct context *ctx, struct device *device, const struct gn_scene *scene,
                              const struct job *job) {
     struct render_film film = {0};
@@ -105,7 +116,7 @@ struct gn_picture *gn_render(struct gn_device *device, struct gn_scene *scene, c
     if (!picture) return NULL;
     double bvh_ms = scene->bvh_ms, start = clock_seconds();
     struct job job;
-    if (!job_make(&job, &ctx, scene, params, !device) || !scene_bvh(scene, &ctx)) goto fail;
+    if (!job_make(&job, &ctx, scene, params, !device) || !picture_fits(&job, &ctx) || !scene_bvh(scene, &ctx)) goto fail;
     if (!(device ? render_on_device(picture, &ctx, &device->device, scene, &job) : render_on_cpu(picture, &ctx, scene, &job))) goto fail;
 
     picture->transfer = scene->scene.film.transfer;

@@ -48,6 +48,7 @@ static void print_error(struct run *run) {
 // Ends the run: result, error, standard output complete or not. Returns the exit code.
 static int finish(struct run *run) {
     progress_clear(&run->view);
+    if (run->error.status == GN_CANCELLED) run_fail(run, GN_CANCELLED, "interrupted");
     errno = 0;
     bool printed = !run->settings.json || print_json(run);
     printed = fflush(stdout) == 0 && !ferror(stdout) && printed;
