@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "device/machine_memory.h"
 
@@ -89,8 +90,10 @@ static bool has_room(const struct device *device, uint32_t heap, VkDeviceSize by
     return device->software || bytes < LARGE_BYTES || bytes <= heap_free(device, heap);
 }
 
-// Tries every memory type that has all of `wish`, and no property that would need a feature or a protected queue.
-static VkResult try_wish(struct allocation *out, struct device *device, const VkMemoryRequirements *needs, VkMemoryPropertyFlags wish) {
+// Tries every memory type that has all of `wish`, and no property that would need a feature or a protected queue. *got: the type's
+// properties.
+static VkResult try_wish(struct allocation *out, struct device *device, const VkMemoryRequirements *needs, VkMemoryPropertyFlags wish,
+                         VkMemoryPropertyFlags *got) {
     VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
     for (uint32_t type = 0; type < device->memory.memoryTypeCount && result != VK_SUCCESS; ++type) {
         const VkMemoryType *candidate = device->memory.memoryTypes + type;
@@ -100,6 +103,7 @@ static VkResult try_wish(struct allocation *out, struct device *device, const Vk
         const VkMemoryAllocateInfo info = {
             .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs->size, .memoryTypeIndex = type};
         result = vkAllocateMemory(device->handle, &info, NULL, &out->memory);
+        *got = candidate->propertyFlags;
     }
     return result;
 }
@@ -113,24 +117,35 @@ static bool refuse(struct context *ctx, struct device *device, const struct allo
                 needed, left);
 }
 
-static bool is_mapped(VkMemoryPropertyFlags wish) { return (wish & HOST) == HOST; }
+static bool sees(VkMemoryPropertyFlags flags) { return (flags & HOST) == HOST; }
+
+// Maps the memory where the host is to see it. A software device's is always tried: Mesa 25.0 does not say so when the machine has none
+// left, but maps it at MAP_FAILED, where kernels would then write.
+static VkResult map(struct allocation *out, struct device *device, bool wanted, VkMemoryPropertyFlags got) {
+    if (!wanted && !(device->software && sees(got))) return VK_SUCCESS;
+    VkResult result = vkMapMemory(device->handle, out->memory, 0, VK_WHOLE_SIZE, 0, &out->map);
+    if (result == VK_SUCCESS && out->map == MAP_FAILED) result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    if (!wanted) out->map = NULL;
+    return result;
+}
 
 bool allocation_init(struct allocation *out, struct context *ctx, struct device *device, const struct allocation_params *params) {
     memset(out, 0, sizeof *out);
     const VkDeviceSize bytes = params->requirements.size;
     if (!allocation_check(ctx, device, params->what, params->name, bytes)) return false;
     const VkMemoryPropertyFlags *wishes = params->host_reads ? HOST_READS : params->host_writes ? HOST_WRITES : KERNEL_ONLY;
+    VkMemoryPropertyFlags wish = 0, got = 0;
     VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    int wish = 0;
-    for (; wish < WISHES && result != VK_SUCCESS; ++wish) result = try_wish(out, device, &params->requirements, wishes[wish]);
+    for (int i = 0; i < WISHES && result != VK_SUCCESS; ++i) {
+        wish = wishes[i];
+        result = try_wish(out, device, &params->requirements, wish, &got);
+    }
     if (result != VK_SUCCESS) return refuse(ctx, device, params);
     out->bytes = bytes;
     device->memory_used += bytes;
-    if (!is_mapped(wishes[wish - 1])) return true;
-    result = vkMapMemory(device->handle, out->memory, 0, VK_WHOLE_SIZE, 0, &out->map);
-    if (result == VK_SUCCESS) return true;
+    if (map(out, device, sees(wish), got) == VK_SUCCESS) return true;
     allocation_finish(out, device);
-    return device_fail(device, ctx, GN_LIMIT, "vkMapMemory", result);
+    return refuse(ctx, device, params);
 }
 
 void allocation_finish(struct allocation *allocation, struct device *device) {
