@@ -1,0 +1,122 @@
+// Loading a scene from either source, and the plain accessors.
+#include "scene/scene.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "scene/bounds.h"
+#include "scene/build.h"
+#include "scene/mesh.h"
+
+bool scene_load(struct scene *out, struct context *ctx, const char *path) {
+    *out = (struct scene){
+        .film = {.width = 512, .height = 512, .spp = 1, .transfer = TRANSFER_SRGB},
+        .shadows = true,
+    };
+    struct scene_build build = {.scene = out, .ctx = ctx, .materials = MATERIAL_TABLE};
+    char suffix[16];
+    path_suffix(path, suffix, sizeof suffix);
+    if (!progress(ctx, "scene", 0, -1)) return false;
+    out->path = strdup(path);
+    bool done = out->path || fail(ctx, GN_LIMIT, "no memory for a path");
+    done = done && (strcmp(suffix, "json") == 0 ? scene_load_json(&build, path) : scene_load_model(&build, path));
+    material_table_take(&build.materials, &out->materials, &out->material_count);
+    done = done && progress(ctx, "scene", 1, 0);
+    if (!done) scene_finish(out);
+    return done;
+}
+
+void scene_finish(struct scene *scene) {
+    for (uint32_t i = 0; i < scene->shape_count; i++) mesh_finish(&scene->shapes[i].mesh);
+    materials_free(scene->materials, scene->material_count);
+    free(scene->path);
+    free(scene->lights);
+    free(scene->shapes);
+    free(scene->first_triangle);
+    free(scene->first_sphere);
+    *scene = (struct scene){0};
+}
+
+const char *path_unreadable(const char *path) {
+    struct stat about;
+    if (stat(path, &about) != 0) return strerror(errno);
+    if (S_ISDIR(about.st_mode)) return "it is a directory";
+    if (!S_ISREG(about.st_mode)) return "it is no regular file";
+    return access(path, R_OK) == 0 ? NULL : strerror(errno);
+}
+
+bool shape_take_model(struct scene_shape *shape, struct scene_build *build, struct model *model, const uint32_t *material) {
+    shape->type = SHAPE_MESH;
+    shape->mesh = model->mesh;
+    model->mesh = (struct scene_mesh){0};
+    if (material || model->material_count == 0) {
+        free(shape->mesh.materials);
+        shape->mesh.materials = NULL;
+        if (!material) return material_need(&build->materials, build->ctx, DEFAULT_MATERIAL, &shape->material);
+        shape->material = *material;
+        return true;
+    }
+    shape->material = (uint32_t)build->materials.items.count;
+    for (uint32_t i = 0; i < model->material_count; i++) {
+        struct scene_material *added = material_add(&build->materials, build->ctx, model->materials[i].name);
+        if (!added) return false;
+        char *name = added->name;
+        *added = model->materials[i];
+        added->name = name;
+    }
+    for (size_t i = 0; shape->mesh.materials && i < shape->mesh.triangle_count; i++) shape->mesh.materials[i] += shape->material;
+    return true;
+}
+
+bool scene_derive(struct scene *scene, struct context *ctx) {
+    scene->first_triangle = array_alloc(ctx, (size_t)scene->shape_count + 1, sizeof *scene->first_triangle, "shapes");
+    scene->first_sphere = array_alloc(ctx, (size_t)scene->shape_count + 1, sizeof *scene->first_sphere, "shapes");
+    if (!scene->first_triangle || !scene->first_sphere) return false;
+    uint64_t triangles = 0, spheres = 0;
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
+        if (scene->shapes[i].type == SHAPE_SPHERE) spheres++;
+        else triangles += scene->shapes[i].mesh.triangle_count;
+        if (triangles > MOST_PRIMITIVES || spheres > MOST_PRIMITIVES)
+            return fail(ctx, GN_LIMIT, "%s: the scene has more than %u %s", scene->path, MOST_PRIMITIVES,
+                        spheres > MOST_PRIMITIVES ? "spheres" : "triangles");
+        scene->first_triangle[i + 1] = (uint32_t)triangles;
+        scene->first_sphere[i + 1] = (uint32_t)spheres;
+    }
+    scene_bounds(scene);
+    return true;
+}
+
+uint32_t scene_triangle_count(const struct scene *scene) { return scene->shape_count ? scene->first_triangle[scene->shape_count] : 0; }
+uint32_t scene_sphere_count(const struct scene *scene) { return scene->shape_count ? scene->first_sphere[scene->shape_count] : 0; }
+
+// The last shape whose number is at most `number`: the one that has it, as the others there are empty.
+static uint32_t shape_of(const uint32_t *first, uint32_t shape_count, uint32_t number) {
+    uint32_t low = 0, high = shape_count;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (first[middle] <= number) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
+struct scene_triangle scene_triangle_at(const struct scene *scene, uint32_t number) {
+    const uint32_t object = shape_of(scene->first_triangle, scene->shape_count, number);
+    const struct scene_mesh *mesh = &scene->shapes[object].mesh;
+    struct scene_triangle triangle = {.object = object, .primitive = number - scene->first_triangle[object]};
+    for (int k = 0; k < 3; k++) {
+        triangle.vertex[k] = mesh->indices[3 * (size_t)triangle.primitive + (size_t)k];
+        triangle.v[k] = mesh->positions + 3 * (size_t)triangle.vertex[k];
+    }
+    triangle.material = mesh->materials ? mesh->materials[triangle.primitive] : scene->shapes[object].material;
+    return triangle;
+}
+
+uint32_t scene_sphere_object(const struct scene *scene, uint32_t number) {
+    return shape_of(scene->first_sphere, scene->shape_count, number);
+}
