@@ -25,7 +25,7 @@ bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn
     struct context ctx = context_make(params->render.host, error);
     if (!device) return fail(&ctx, GN_USAGE, "verifying compares a device with the reference: a device is needed");
     struct gn_render_params render = params->render;
-    render.aovs |= GN_AOV_ID;
+    render.aovs |= GN_AOV_ID | GN_AOV_DEPTH;
     struct image values = {0};
     struct gn_picture *theirs = NULL, *ours = gn_render(device, scene, &render, error);
     if (!ours || !(theirs = gn_render(NULL, scene, &render, error))) goto done;
@@ -33,9 +33,8 @@ bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn
     result->device = ours->stats, result->reference = theirs->stats;
     result->nonfinite_pixels = ours->stats.nonfinite_pixels;
     double tolerance = params->tolerance > 0 ? params->tolerance : VERIFY_TOLERANCE;
-    if (!verify_pictures(result, difference ? &values : NULL, &ctx, (struct verify_side){&ours->color, &ours->id},
-                         (struct verify_side){&theirs->color, &theirs->id}, tolerance))
-        goto done;
+    struct verify_side a = {&ours->color, &ours->id, &ours->depth}, b = {&theirs->color, &theirs->id, &theirs->depth};
+    if (!verify_pictures(result, difference ? &values : NULL, &ctx, a, b, tolerance)) goto done;
     if (difference && !(*difference = picture_of(&ctx, &values))) goto done;
 
 done:

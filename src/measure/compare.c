@@ -51,7 +51,8 @@ bool compare_images(struct gn_compare_result *out, struct image *flip_map, struc
                     double tolerance) {
     memset(out, 0, sizeof *out);
     if (flip_map) *flip_map = (struct image){0};
-    if (a->channels != 3 || b->channels != 3) return fail(ctx, GN_INTERNAL, "images of 3 channels can be compared; these have %u and %u", a->channels, b->channels);
+    if (a->channels != 3 || b->channels != 3)
+        return fail(ctx, GN_USAGE, "the images have %u and %u channels, 3 were expected", a->channels, b->channels);
     if (a->width != b->width || a->height != b->height)
         return fail(ctx, GN_USAGE, "the images differ in size: %u × %u and %u × %u pixels", a->width, a->height, b->width, b->height);
     struct image map;

@@ -29,10 +29,18 @@ static struct pixel_error pixel_error(const float *device, const float *referenc
     return error;
 }
 
-static void add_pixel(struct gn_verify_result *out, struct pixel_error error, uint32_t x, uint32_t y) {
+static void add_color(struct gn_verify_result *out, struct pixel_error error, uint32_t x, uint32_t y) {
     if (isinf(error.limits)) out->nonfinite_pixels++;
     if (!(error.limits <= 1)) out->pixels_differing++;
     if (error.worst > out->max_abs) out->max_abs = error.worst, out->worst_x = x, out->worst_y = y;
+}
+
+static void add_hit(struct gn_verify_result *out, struct verify_side device, struct verify_side reference, size_t pixel) {
+    const float *ours = device.id->pixels + 2 * pixel, *right = reference.id->pixels + 2 * pixel;
+    if (ours[0] == right[0] && ours[1] == right[1]) return;
+    out->wrong_hits++;
+    double depth = reference.depth->pixels[pixel];
+    out->ties += fabs((double)device.depth->pixels[pixel] - depth) <= VERIFY_RELATIVE * depth;
 }
 
 bool verify_pictures(struct gn_verify_result *out, struct image *difference, struct context *ctx, struct verify_side device,
@@ -46,9 +54,8 @@ bool verify_pictures(struct gn_verify_result *out, struct image *difference, str
         for (uint32_t x = 0; x < width; x++) {
             size_t i = (size_t)y * width + x;
             struct pixel_error error = pixel_error(device.color->pixels + 3 * i, reference.color->pixels + 3 * i, tolerance);
-            const float *a = device.id->pixels + 2 * i, *b = reference.id->pixels + 2 * i;
-            add_pixel(out, error, x, y);
-            out->wrong_hits += a[0] != b[0] || a[1] != b[1];
+            add_color(out, error, x, y);
+            add_hit(out, device, reference, i);
             squares += error.squares;
             if (difference) difference->pixels[i] = (float)fmin(1, 0.5 * error.limits);
         }
@@ -57,6 +64,6 @@ bool verify_pictures(struct gn_verify_result *out, struct image *difference, str
     out->pixels = (uint64_t)width * height;
     out->pixels_allowed = verify_allowed(out->pixels);
     out->rmse = sqrt(squares / (3 * (double)out->pixels));
-    out->pass = out->pixels_differing <= out->pixels_allowed && out->wrong_hits <= out->pixels_allowed && out->nonfinite_pixels == 0;
+    out->pass = out->pixels_differing <= out->pixels_allowed && out->wrong_hits - out->ties <= out->pixels_allowed && out->nonfinite_pixels == 0;
     return true;
 }

@@ -6,6 +6,9 @@
 // without gamma; for values over 1 at least 2^-12 of the value, which fp32 shading keeps with room to spare), and few pixels may differ: 1 in 10 000,
 // or 2 in a small picture. A whole edge drawn wrongly, a missing shadow, a lost triangle or another random number is far more than that; so is
 // one value that is not finite, which fails alone.
+//
+// Errors that colours hide are found in what the first sample hit: as many hits may be wrong. Not counted there are ties, wrong hits at the right depth:
+// where surfaces coincide, in a stack of decals, say, the order of a tier that rounds is chance, and does no harm where the colour is right, too.
 #ifndef MEASURE_VERIFY_H
 #define MEASURE_VERIFY_H
 
@@ -19,6 +22,7 @@
 struct verify_side {
     const struct image *color;      // 3 channels
     const struct image *id;         // 2 channels: object and primitive of the first sample
+    const struct image *depth;      // 1 channel
 };
 
 // How many of `pixels` pixels may differ.
