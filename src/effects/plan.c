@@ -1,0 +1,218 @@
+// The rules: what calls for each effect, and why leaving it out changes no pixel when nothing does.
+#include "effects/plan.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/words.h"
+
+#define BECAUSE_SIZE sizeof(((struct plan *)0)->because[0])
+#define FEW_PRIMITIVES 4        // as many are tested one by one as fast as by way of boxes
+
+// What the rules look at. Shapes of a disabled kind are not there.
+struct facts {
+    const struct scene *scene;
+    uint32_t disabled;          // EFFECT_* bits
+    uint32_t effects;           // that run, of those with a lower number
+    uint32_t spp;
+    uint32_t *used_by;          // for each material the first shape that uses it, or NOT_USED
+    uint32_t triangles, spheres;
+    uint32_t shapes, last_shape; // how many there are, and the last
+};
+#define NOT_USED UINT32_MAX
+
+static bool says(char *because, bool on, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static bool says(char *because, bool on, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(because, BECAUSE_SIZE, format, arguments);
+    va_end(arguments);
+    return on;
+}
+
+// ------------------------------------------------------------------------------------------------------------------- facts
+
+static bool is_there(const struct facts *facts, uint32_t shape) {
+    const bool sphere = facts->scene->shapes[shape].type == SHAPE_SPHERE;
+    return !(facts->disabled & (sphere ? EFFECT_SPHERES : EFFECT_TRIANGLES));
+}
+
+static void note_material(struct facts *facts, uint32_t material, uint32_t shape) {
+    if (facts->used_by[material] == NOT_USED) facts->used_by[material] = shape;
+}
+
+static bool facts_init(struct facts *out, struct context *ctx, const struct scene *scene, uint32_t disabled, uint32_t spp) {
+    *out = (struct facts){.scene = scene, .disabled = disabled, .spp = spp};
+    out->used_by = array_alloc(ctx, scene->material_count, sizeof *out->used_by, "materials");
+    if (!out->used_by) return false;
+    for (uint32_t i = 0; i < scene->material_count; i++) out->used_by[i] = NOT_USED;
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
+        const struct scene_shape *shape = &scene->shapes[i];
+        if (!is_there(out, i)) continue;
+        out->shapes++;
+        out->last_shape = i;
+        if (shape->type == SHAPE_SPHERE) out->spheres++;
+        else out->triangles += shape->mesh.triangle_count;
+        if (!shape->mesh.materials) note_material(out, shape->material, i);
+        else
+            for (uint32_t k = 0; k < shape->mesh.triangle_count; k++) note_material(out, shape->mesh.materials[k], i);
+    }
+    return true;
+}
+
+// The first light with intensity in a channel, or light_count.
+static uint32_t first_light(const struct scene *scene, int channel) {
+    uint32_t i = 0;
+    while (i < scene->light_count && !(scene->lights[i].intensity[channel] > 0)) i++;
+    return i;
+}
+
+static const float *diffuse_of(const struct scene_material *material) { return material->diffuse; }
+static const float *specular_of(const struct scene_material *material) { return material->specular; }
+
+// A light and a material in use whose colors have a channel in common: the product of intensity and color is 0 for all others, and so is what they add.
+static bool light_meets(const struct facts *facts, const float *(*color)(const struct scene_material *), const char *name, char *because) {
+    const struct scene *scene = facts->scene;
+    uint32_t light[3], shining = 0;
+    for (int k = 0; k < 3; k++) {
+        light[k] = first_light(scene, k);
+        shining += light[k] < scene->light_count;
+    }
+    if (shining == 0) return says(because, false, scene->light_count ? "no light has any intensity" : "there are no lights");
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        for (int k = 0; k < 3; k++)
+            if (facts->used_by[i] != NOT_USED && light[k] < scene->light_count && color(&scene->materials[i])[k] > 0)
+                return says(because, true, "light %u and the %s color of material '%s' on shape %u", light[k], name,
+                            excerpt_word(scene->materials[i].name).text, facts->used_by[i]);
+    return says(because, false, "no material in use has a %s color that a light could show", name);
+}
+
+// ------------------------------------------------------------------------------------------------------------------- rules
+
+static bool rule_TRIANGLES(const struct facts *facts, char *because) {
+    for (uint32_t i = 0; i < facts->scene->shape_count; i++)
+        if (is_there(facts, i) && facts->scene->shapes[i].type != SHAPE_SPHERE)
+            return says(because, true, "shape %u and %u triangle%s in all", i, facts->triangles, facts->triangles == 1 ? "" : "s");
+    return says(because, false, "there are no triangles");
+}
+
+static bool rule_SPHERES(const struct facts *facts, char *because) {
+    for (uint32_t i = 0; i < facts->scene->shape_count; i++)
+        if (is_there(facts, i) && facts->scene->shapes[i].type == SHAPE_SPHERE)
+            return says(because, true, "shape %u and %u sphere%s in all", i, facts->spheres, facts->spheres == 1 ? "" : "s");
+    return says(because, false, "there are no spheres");
+}
+
+// A hierarchy decides which primitives are tested, not which are hit. A leaf holds primitives of one kind.
+static bool rule_BVH(const struct facts *facts, char *because) {
+    const uint32_t count = facts->triangles + facts->spheres;
+    if (count > FEW_PRIMITIVES) return says(because, true, "%u primitives", count);
+    if (facts->triangles && facts->spheres) return says(because, true, "triangles and spheres");
+    return says(because, false, "%u primitive%s: one leaf", count, count == 1 ? "" : "s");
+}
+
+// Without vertex normals the shading normal is the geometric one.
+static bool rule_SMOOTH_NORMALS(const struct facts *facts, char *because) {
+    for (uint32_t i = 0; i < facts->scene->shape_count; i++)
+        if (is_there(facts, i) && facts->scene->shapes[i].mesh.normals) return says(because, true, "the vertex normals of shape %u", i);
+    return says(because, false, "no mesh has vertex normals");
+}
+
+static bool rule_DIFFUSE(const struct facts *facts, char *because) { return light_meets(facts, diffuse_of, "diffuse", because); }
+static bool rule_SPECULAR(const struct facts *facts, char *because) { return light_meets(facts, specular_of, "specular", because); }
+
+// Where a point certainly is: 1 inside the sphere, -1 outside, 0 on it or too near to tell. The sum is off by a few 2^-53 of itself.
+static int side_of(const struct scene_shape *sphere, const float point[3]) {
+    double square = 0;
+    for (int i = 0; i < 3; i++) square += ((double)point[i] - sphere->center[i]) * ((double)point[i] - sphere->center[i]);
+    const double radius2 = (double)sphere->radius * sphere->radius;
+    return square < radius2 * (1 - 1e-12) ? 1 : square > radius2 * (1 + 1e-12) ? -1 : 0;
+}
+
+// A sphere alone. From outside, one sees the outward side of points whose normal n points outward, and a light counts where n·l > 0: from such a point the
+// way to the light leaves the ball, which is convex, and never meets it again. A light inside the ball counts only for the inward side, and
+// the way to it stays inside. What is left, a light outside that would shine on the inward side, needs a camera that is not outside.
+static bool sphere_shadows_itself(const struct scene *scene, const struct scene_shape *sphere) {
+    if (side_of(sphere, scene->camera.position) < 0) return false;
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        if (side_of(sphere, scene->lights[i].position) <= 0) return true;
+    return false;
+}
+
+// A triangle alone: the way to a light starts in its plane, and meets the plane nowhere else unless it lies in it, which is no hit.
+static bool rule_SHADOWS(const struct facts *facts, char *because) {
+    const struct scene *scene = facts->scene;
+    if (!scene->shadows) return says(because, false, "the scene switches shadows off");
+    if (!(facts->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR))) return says(because, false, "nothing is lit that could lie in shadow");
+    const struct scene_shape *last = &scene->shapes[facts->last_shape];
+    if (facts->triangles + facts->spheres > 1) return says(because, true, "light and %u primitives", facts->triangles + facts->spheres);
+    if (facts->triangles == 1) return says(because, false, "a triangle alone casts no shadow on itself");
+    if (sphere_shadows_itself(scene, last)) return says(because, true, "shape %u, a sphere that is seen from inside", facts->last_shape);
+    return says(because, false, "a sphere alone casts no shadow on the side that is lit");
+}
+
+// One sample goes through the pixel's center.
+static bool rule_ANTIALIASING(const struct facts *facts, char *because) {
+    return says(because, facts->spp > 1, "%u sample%s per pixel", facts->spp, facts->spp == 1 ? "" : "s");
+}
+
+// -------------------------------------------------------------------------------------------------------------------- plan
+
+static const struct { const char *name; bool (*rule)(const struct facts *, char *); } effects[EFFECT_COUNT] = {
+#define X(number, id, name, text) [number] = {name, rule_##id},
+    EFFECTS(X)
+#undef X
+};
+
+const char *effect_name(uint32_t effect) { return effect < EFFECT_COUNT ? effects[effect].name : ""; }
+
+void effect_names(uint32_t bits, char *text, size_t capacity) {
+    size_t used = 0;
+    if (capacity) text[0] = '\0';
+    for (uint32_t i = 0; i < EFFECT_COUNT; i++)
+        if (bits >> i & 1 && used < capacity) used += (size_t)snprintf(text + used, capacity - used, "%s%s", used ? "," : "", effects[i].name);
+}
+
+static bool parse_one(uint32_t *bits, struct context *ctx, const char *name, size_t length) {
+    char all[512], wanted[64];
+    snprintf(wanted, sizeof wanted, "%.*s", (int)(length < 60 ? length : 60), name);
+    struct nearest nearest = nearest_to(wanted);
+    for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
+        if (strcmp(wanted, effects[i].name) == 0) {
+            *bits |= 1u << i;
+            return true;
+        }
+        nearest_offer(&nearest, effects[i].name);
+    }
+    effect_names((1u << EFFECT_COUNT) - 1, all, sizeof all);
+    return fail(ctx, GN_USAGE, "'%s' is no effect, expected some of: %s%s", excerpt_word(wanted).text, all, nearest_hint(&nearest).text);
+}
+
+static bool parse_disabled(uint32_t *bits, struct context *ctx, const char *list) {
+    *bits = 0;
+    for (const char *at = list; at && *at;) {
+        const size_t length = strcspn(at, ",");
+        if (!parse_one(bits, ctx, at, length)) return false;
+        at += length;
+        if (*at == ',' && at[1] == '\0') return parse_one(bits, ctx, "", 0);
+        at += *at == ',';
+    }
+    return true;
+}
+
+bool plan_make(struct plan *out, struct context *ctx, const struct scene *scene, const struct plan_params *params) {
+    *out = (struct plan){0};
+    uint32_t disabled;
+    struct facts facts;
+    if (!parse_disabled(&disabled, ctx, params->disable) || !facts_init(&facts, ctx, scene, disabled, params->spp)) return false;
+    for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
+        bool on = effects[i].rule(&facts, out->because[i]);
+        if (params->no_prune && !on) on = says(out->because[i], true, "pruning is switched off");
+        if (disabled >> i & 1) on = says(out->because[i], false, "disabled on request");
+        if (on) facts.effects |= 1u << i;
+    }
+    out->effects = facts.effects;
+    free(facts.used_by);
+    return true;
+}
