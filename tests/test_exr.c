@@ -9,10 +9,13 @@ static void layers_come_back(void **state) {
     static const struct { uint32_t width, height; } cases[] = {{1, 1}, {17, 5}, {3, 40}, {100, 33}};
     const float odd[] = {INFINITY, -INFINITY, NAN, -0.0f, 0x1p-149f, -1e30f};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct image colour = noise_image(cases[i].width, cases[i].height, 3), depth = noise_image(cases[i].width, cases[i].height, 1), back;
+        struct image colour = noise_image(cases[i].width, cases[i].height, 3), depth = noise_image(cases[i].width, cases[i].height, 1),
+                     back;
         struct image normal = noise_image(cases[i].width, cases[i].height, 3), id = noise_image(cases[i].width, cases[i].height, 2);
         for (size_t k = 0; k < 6 && i > 0; k++) colour.pixels[k] = odd[k];
-        const struct image_layer layers[] = {{&colour, {"R", "G", "B"}}, {&depth, {"Z"}}, {&normal, {"normal.X", "normal.Y", "normal.Z"}},
+        const struct image_layer layers[] = {{&colour, {"R", "G", "B"}},
+                                             {&depth, {"Z"}},
+                                             {&normal, {"normal.X", "normal.Y", "normal.Z"}},
                                              {&id, {"id.object", "id.primitive"}}};
         const char *path = scratch_path("a.exr");
         scratch_assert(image_write_exr(layers, 4, scratch_context(), path));
@@ -62,14 +65,14 @@ static void wrong_layers_are_refused(void **state) {
 // How to make a file; the samples are small whole numbers, which every type holds, and every compression keeps where it is exact.
 struct foreign_exr {
     const char *what;
-    const char *channels;       // one letter for each channel, in alphabetical order
+    const char *channels; // one letter for each channel, in alphabetical order
     exr_pixel_type_t type;
     exr_compression_t compression;
-    int tile;                   // width and height of tiles; 0: scan lines
-    int levels;                 // exr_tile_level_mode_t
+    int tile;   // width and height of tiles; 0: scan lines
+    int levels; // exr_tile_level_mode_t
     int width, height, left, top, sampling;
     double tolerance;
-    const char *message;        // how it is refused; NULL if it is read
+    const char *message; // how it is refused; NULL if it is read
 };
 
 #define PLAIN "BGR", EXR_PIXEL_FLOAT
@@ -115,7 +118,9 @@ static void make_header(exr_context_t exr, const struct foreign_exr *f, exr_stor
         char name[2] = {*c, 0};
         CHECK(exr_add_channel(exr, part, name, f->type, EXR_PERCEPTUALLY_LOGARITHMIC, f->sampling, f->sampling));
     }
-    if (f->tile) CHECK(exr_set_tile_descriptor(exr, part, (uint32_t)f->tile, (uint32_t)f->tile, (exr_tile_level_mode_t)f->levels, EXR_TILE_ROUND_DOWN));
+    if (f->tile)
+        CHECK(exr_set_tile_descriptor(exr, part, (uint32_t)f->tile, (uint32_t)f->tile, (exr_tile_level_mode_t)f->levels,
+                                      EXR_TILE_ROUND_DOWN));
 }
 
 // Fills one chunk, whose corner is pixel (left, top) of the image, and writes it.
@@ -199,7 +204,11 @@ static void files_of_others_are_read(void **state) {
 // Files that have a header only: deep ones, and one of two parts.
 static void other_kinds_are_refused(void **state) {
     (void)state;
-    static const struct { exr_storage_t storage; int parts; const char *message; } cases[] = {
+    static const struct {
+        exr_storage_t storage;
+        int parts;
+        const char *message;
+    } cases[] = {
         {EXR_STORAGE_DEEP_SCANLINE, 1, "has deep pixels, which are not supported"},
         {EXR_STORAGE_SCANLINE, 2, "has 2 parts; a file of one part was expected"},
     };
@@ -247,8 +256,9 @@ static char *find(const struct file_bytes *bytes, const char *what, size_t size)
 
 static void a_file_that_claims_too_much_is_refused(void **state) {
     (void)state;
-    static const struct { int32_t right, bottom; } cases[] = {{INT32_MAX, INT32_MAX}, {INT32_MAX - 1, 0}, {65535, 65535}, {16383, 16383}, {-1, -1}, {-1, 4},
-                                                              {INT32_MIN, INT32_MIN}};
+    static const struct {
+        int32_t right, bottom;
+    } cases[] = {{INT32_MAX, INT32_MAX}, {INT32_MAX - 1, 0}, {65535, 65535}, {16383, 16383}, {-1, -1}, {-1, 4}, {INT32_MIN, INT32_MIN}};
     struct file_bytes bytes;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         scratch_assert(file_read(&bytes, scratch_context(), write_foreign(&FOREIGN[i % 2 ? 3 : 17]), GN_IO));
@@ -262,12 +272,9 @@ static void a_file_that_claims_too_much_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_come_back),
-        cmocka_unit_test(wrong_layers_are_refused),
-        cmocka_unit_test(files_of_others_are_read),
-        cmocka_unit_test(other_kinds_are_refused),
-        cmocka_unit_test(damage_does_no_harm),
-        cmocka_unit_test(a_file_that_claims_too_much_is_refused),
+        cmocka_unit_test(layers_come_back),         cmocka_unit_test(wrong_layers_are_refused),
+        cmocka_unit_test(files_of_others_are_read), cmocka_unit_test(other_kinds_are_refused),
+        cmocka_unit_test(damage_does_no_harm),      cmocka_unit_test(a_file_that_claims_too_much_is_refused),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

@@ -57,7 +57,8 @@ static void reads_long_files_and_pipes(void **state) {
 static void says_what_cannot_be_read(void **state) {
     (void)state;
     struct file_bytes bytes;
-    scratch_assert_fails(file_read(&bytes, scratch_context(), "/nowhere/at/all.json", GN_SCENE), GN_SCENE, "/nowhere/at/all.json: cannot be opened: No such file");
+    scratch_assert_fails(file_read(&bytes, scratch_context(), "/nowhere/at/all.json", GN_SCENE), GN_SCENE,
+                         "/nowhere/at/all.json: cannot be opened: No such file");
     scratch_assert_fails(file_read(&bytes, scratch_context(), "/tmp", GN_IO), GN_IO, "/tmp: is a directory");
     scratch_assert_fails(file_read(&bytes, scratch_context(), "", GN_IO), GN_IO, "cannot be opened");
     scratch_assert_fails(file_read(&bytes, scratch_context(), "/dev/zero", GN_IO), GN_IO, "/dev/zero: gives more than 256 MiB");
@@ -66,7 +67,9 @@ static void says_what_cannot_be_read(void **state) {
 
 static void says_what_cannot_be_written(void **state) {
     (void)state;
-    static const struct { const char *path, *message; } cases[] = {
+    static const struct {
+        const char *path, *message;
+    } cases[] = {
         {"/nowhere/at/all.png", "/nowhere/at/all.png: cannot be written: its folder does not exist"},
         {"/tmp", "/tmp: cannot be written: it is a directory"},
         {"/tmp/", "/tmp/: cannot be written: it is a directory"},
@@ -176,9 +179,22 @@ static void the_longest_name_works(void **state) {
 
 static void suffixes(void **state) {
     (void)state;
-    static const struct { const char *path, *suffix; } cases[] = {
-        {"a.png", "png"}, {"a.PNG", "png"}, {"a.tar.gz", "gz"}, {"a", ""},       {"", ""},       {".png", ""},           {"b.d/a", ""},
-        {"a.", ""},       {"x/.y", ""},     {"../a.exr", "exr"}, {"a.b/c.D", "d"}, {"a.sevenchr", ""}, {"a.seven77", "seven77"},
+    static const struct {
+        const char *path, *suffix;
+    } cases[] = {
+        {"a.png", "png"},
+        {"a.PNG", "png"},
+        {"a.tar.gz", "gz"},
+        {"a", ""},
+        {"", ""},
+        {".png", ""},
+        {"b.d/a", ""},
+        {"a.", ""},
+        {"x/.y", ""},
+        {"../a.exr", "exr"},
+        {"a.b/c.D", "d"},
+        {"a.sevenchr", ""},
+        {"a.seven77", "seven77"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char suffix[8];
@@ -190,9 +206,15 @@ static void suffixes(void **state) {
 
 static void names_beside(void **state) {
     (void)state;
-    static const struct { const char *base, *name, *path; } cases[] = {
-        {"scene.json", "a.obj", "a.obj"},         {"x/scene.json", "a.obj", "x/a.obj"}, {"/x/scene.json", "y/a.obj", "/x/y/a.obj"},
-        {"x/scene.json", "/y/a.obj", "/y/a.obj"}, {"/s.json", "a", "/a"},               {"x/s.json", "", "x/"},
+    static const struct {
+        const char *base, *name, *path;
+    } cases[] = {
+        {"scene.json", "a.obj", "a.obj"},
+        {"x/scene.json", "a.obj", "x/a.obj"},
+        {"/x/scene.json", "y/a.obj", "/x/y/a.obj"},
+        {"x/scene.json", "/y/a.obj", "/y/a.obj"},
+        {"/s.json", "a", "/a"},
+        {"x/s.json", "", "x/"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char *path = path_beside(cases[i].base, cases[i].name);

@@ -36,9 +36,11 @@ static void failed_writes_leave_nothing(void **state) {
     (void)state;
     struct image image = noise_image(64, 64, 3);
     scratch_count(true);
-    scratch_assert_fails(image_write_png(&image, scratch_context(), "/dev/full", TRANSFER_SRGB), GN_IO, "/dev/full: cannot be written: No space left");
+    scratch_assert_fails(image_write_png(&image, scratch_context(), "/dev/full", TRANSFER_SRGB), GN_IO,
+                         "/dev/full: cannot be written: No space left");
     scratch_assert_fails(image_write_pfm(&image, scratch_context(), "/dev/full"), GN_IO, "/dev/full: cannot be written: No space left");
-    scratch_assert_fails(image_write_png(&image, scratch_context(), "/no/a.png", TRANSFER_SRGB), GN_IO, "/no/a.png: cannot be written: its folder");
+    scratch_assert_fails(image_write_png(&image, scratch_context(), "/no/a.png", TRANSFER_SRGB), GN_IO,
+                         "/no/a.png: cannot be written: its folder");
     scratch_assert_fails(image_write_pfm(&image, scratch_context(), "/no/a.pfm"), GN_IO, "/no/a.pfm: cannot be written: its folder");
     assert_int_equal(scratch_count(false), 0);
     image_finish(&image);
@@ -48,8 +50,11 @@ static void failed_writes_leave_nothing(void **state) {
 
 static void png_comes_back(void **state) {
     (void)state;
-    static const struct { uint32_t width, height, channels; enum transfer transfer; } cases[] = {
-        {1, 1, 3, TRANSFER_SRGB},   {1, 1, 1, TRANSFER_SRGB}, {17, 5, 3, TRANSFER_SRGB},   {5, 17, 1, TRANSFER_SRGB},
+    static const struct {
+        uint32_t width, height, channels;
+        enum transfer transfer;
+    } cases[] = {
+        {1, 1, 3, TRANSFER_SRGB},     {1, 1, 1, TRANSFER_SRGB},     {17, 5, 3, TRANSFER_SRGB},  {5, 17, 1, TRANSFER_SRGB},
         {300, 200, 3, TRANSFER_SRGB}, {1, 500, 3, TRANSFER_LINEAR}, {7, 3, 3, TRANSFER_LINEAR}, {7, 3, 1, TRANSFER_LINEAR},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -76,11 +81,11 @@ struct foreign_png {
     const char *what;
     uint32_t width, height;
     uint8_t bit_depth, color_type, interlace;
-    uint32_t gamma;         // 100000 times; 0 for none
+    uint32_t gamma; // 100000 times; 0 for none
     unsigned char pixels[16];
     size_t size;
-    uint8_t transparent;    // with tRNS
-    uint16_t expected[6];   // the first two pixels' codes, out of `full`
+    uint8_t transparent;  // with tRNS
+    uint16_t expected[6]; // the first two pixels' codes, out of `full`
     double full;
     enum transfer transfer;
 };
@@ -125,7 +130,19 @@ static const struct foreign_png FOREIGN[] = {
     {"palette with an entry transparent", 2, 1, 8, 3, 0, 0, {0, 1}, 2, 1, {1, 2, 3, 10, 20, 30}, 255, TRANSFER_SRGB},
     {"interlaced", 2, 2, 8, 2, 1, 0, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, 12, 0, {1, 2, 3, 4, 5, 6}, 255, TRANSFER_SRGB},
     {"linear", 2, 1, 8, 2, 0, 100000, {1, 2, 3, 4, 5, 6}, 6, 0, {1, 2, 3, 4, 5, 6}, 255, TRANSFER_LINEAR},
-    {"linear 16", 2, 1, 16, 0, 0, 100000, {0x34, 0x12, 0xff, 0xff}, 4, 0, {0x1234, 0x1234, 0x1234, 65535, 65535, 65535}, 65535, TRANSFER_LINEAR},
+    {"linear 16",
+     2,
+     1,
+     16,
+     0,
+     0,
+     100000,
+     {0x34, 0x12, 0xff, 0xff},
+     4,
+     0,
+     {0x1234, 0x1234, 0x1234, 65535, 65535, 65535},
+     65535,
+     TRANSFER_LINEAR},
     {"gamma 1/2.2", 2, 1, 8, 2, 0, 45455, {1, 2, 3, 4, 5, 6}, 6, 0, {1, 2, 3, 4, 5, 6}, 255, TRANSFER_SRGB},
 };
 
@@ -171,7 +188,10 @@ static void store_big_endian(unsigned char *at, uint32_t value) {
 
 static void png_that_claims_too_much_is_refused(void **state) {
     (void)state;
-    static const struct { uint32_t width, height; const char *message; } cases[] = {
+    static const struct {
+        uint32_t width, height;
+        const char *message;
+    } cases[] = {
         {2147483647, 2147483647, "is not a valid PNG file: "},
         {65536, 65536, "announces 65536 × 65536 pixels"},
         {16384, 16384, "which cannot be in a file of"},
@@ -231,9 +251,17 @@ static void pfm_of_others_is_read(void **state) {
     (void)state;
 #define LITTLE "\x00\x00\x80\x3f\x00\x00\x00\x40"
 #define BIG "\x3f\x80\x00\x00\x40\x00\x00\x00"
-    static const struct { const char *header, *data; } cases[] = {
-        {"Pf\n1 2\n-1.0\n", LITTLE}, {"Pf\n1 2\n1.0\n", BIG},      {"Pf 1 2 1 ", BIG},          {"Pf\r\n1\t2\r\n-1\n", LITTLE},
-        {"Pf\n1 2\n+1e-3\n", BIG},   {"Pf\n1 2\n-0.5\n", LITTLE}, {"Pf\n1 2\n-100E+2\n", LITTLE}, {"Pf\n\n 1 \n 2 \n\n-.1\n", LITTLE},
+    static const struct {
+        const char *header, *data;
+    } cases[] = {
+        {"Pf\n1 2\n-1.0\n", LITTLE},
+        {"Pf\n1 2\n1.0\n", BIG},
+        {"Pf 1 2 1 ", BIG},
+        {"Pf\r\n1\t2\r\n-1\n", LITTLE},
+        {"Pf\n1 2\n+1e-3\n", BIG},
+        {"Pf\n1 2\n-0.5\n", LITTLE},
+        {"Pf\n1 2\n-100E+2\n", LITTLE},
+        {"Pf\n\n 1 \n 2 \n\n-.1\n", LITTLE},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char bytes[64];
@@ -251,7 +279,9 @@ static void pfm_of_others_is_read(void **state) {
 
 static void malformed_pfm_is_refused(void **state) {
     (void)state;
-    static const struct { const char *bytes, *message; } cases[] = {
+    static const struct {
+        const char *bytes, *message;
+    } cases[] = {
         {"PF", "malformed PFM header"},
         {"PF\n", "malformed PFM header"},
         {"PG\n1 1\n-1\n", "is neither PNG, OpenEXR nor PFM"},
@@ -279,8 +309,10 @@ static void malformed_pfm_is_refused(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const char *path = scratch_file("a.pfm", cases[i].bytes, strlen(cases[i].bytes));
         struct image image;
-        if (cases[i].message) assert_read_fails(path, cases[i].message);
-        else scratch_assert(image_read(&image, scratch_context(), path));
+        if (cases[i].message)
+            assert_read_fails(path, cases[i].message);
+        else
+            scratch_assert(image_read(&image, scratch_context(), path));
         if (!cases[i].message) image_finish(&image);
     }
 }

@@ -18,7 +18,11 @@ static const char *make_file(unsigned version, const char *header, size_t align,
 
 static void reads_every_way_to_write_it(void **state) {
     (void)state;
-    static const struct { unsigned version; const char *header; size_t align; } cases[] = {
+    static const struct {
+        unsigned version;
+        const char *header;
+        size_t align;
+    } cases[] = {
         {1, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }", 64},
         {1, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }", 16},
         {2, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }", 64},
@@ -43,7 +47,11 @@ static void reads_every_way_to_write_it(void **state) {
 
 static void refuses_what_is_not_expected(void **state) {
     (void)state;
-    static const struct { const char *header; size_t size; const char *message; } cases[] = {
+    static const struct {
+        const char *header;
+        size_t size;
+        const char *message;
+    } cases[] = {
         {"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }", 48, "has elements of type '<f8', expected '<f4'"},
         {"{'descr': '>f4', 'fortran_order': False, 'shape': (2, 3), }", 24, "has elements of type '>f4', expected '<f4'"},
         {"{'descr': '|O', 'fortran_order': False, 'shape': (2, 3), }", 24, "has elements of type '|O'"},
@@ -93,7 +101,11 @@ static void refuses_what_is_not_expected(void **state) {
 
 static void refuses_other_files(void **state) {
     (void)state;
-    static const struct { const char *bytes; size_t size; const char *message; } cases[] = {
+    static const struct {
+        const char *bytes;
+        size_t size;
+        const char *message;
+    } cases[] = {
         {"", 0, "is no .npy file"},
         {"\x93NUMPY\x01", 7, "is no .npy file"},
         {"PK\x03\x04 and so on", 15, "is no .npy file"},
@@ -199,23 +211,24 @@ static void reads_back_what_it_writes(void **state) {
         assert_int_equal(count, counts[i]);
         assert_memory_equal(records, hits, count * sizeof *hits);
         free(records);
-        scratch_assert_fails(npy_read_f32(&data, &count, scratch_context(), scratch_path("hits.npy"), 6), GN_IO, "has elements of type [('t', '<f4'), ");
+        scratch_assert_fails(npy_read_f32(&data, &count, scratch_context(), scratch_path("hits.npy"), 6), GN_IO,
+                             "has elements of type [('t', '<f4'), ");
     }
     struct gn_hit *records;
     size_t count;
-    const char *path = make_file(1, "{'descr': [('u', '<f4'), ('t', '<f4'), ('v', '<f4'), ('object', '<i4'), ('primitive', '<i4'), "
-                                    "('flags', '<u4')], 'fortran_order': False, 'shape': (1,), }", 64, 24);
-    scratch_assert_fails(npy_read_hits(&records, &count, scratch_context(), path), GN_IO, "has elements of type [('u', '<f4'), ('t', '<f4')");
+    const char *path = make_file(1,
+                                 "{'descr': [('u', '<f4'), ('t', '<f4'), ('v', '<f4'), ('object', '<i4'), ('primitive', '<i4'), "
+                                 "('flags', '<u4')], 'fortran_order': False, 'shape': (1,), }",
+                                 64, 24);
+    scratch_assert_fails(npy_read_hits(&records, &count, scratch_context(), path), GN_IO,
+                         "has elements of type [('u', '<f4'), ('t', '<f4')");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_every_way_to_write_it),
-        cmocka_unit_test(refuses_what_is_not_expected),
-        cmocka_unit_test(refuses_other_files),
-        cmocka_unit_test(survives_damage),
-        cmocka_unit_test(writes_what_numpy_reads),
-        cmocka_unit_test(reads_back_what_it_writes),
+        cmocka_unit_test(reads_every_way_to_write_it), cmocka_unit_test(refuses_what_is_not_expected),
+        cmocka_unit_test(refuses_other_files),         cmocka_unit_test(survives_damage),
+        cmocka_unit_test(writes_what_numpy_reads),     cmocka_unit_test(reads_back_what_it_writes),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

@@ -18,8 +18,8 @@
 struct tally {
     atomic_uint runs[MOST];
     atomic_uint chunks, longest, highest_thread;
-    size_t fails_at;            // the body fails in the chunk with this index
-    long sleep_ns;              // of each chunk; of all but thread 0 with `others_sleep`
+    size_t fails_at; // the body fails in the chunk with this index
+    long sleep_ns;   // of each chunk; of all but thread 0 with `others_sleep`
     bool others_sleep;
 };
 
@@ -54,9 +54,12 @@ static bool each_once(const struct tally *tally, size_t count) {
 
 static void each_index_is_run_once(void **state) {
     (void)state;
-    static const struct { unsigned threads; size_t count, grain; } cases[] = {
-        {1, 10, 3}, {4, 10000, 1}, {4, 10000, 7}, {3, 9999, 100}, {8, 3, 1}, {2, 5, 1000}, {4, 0, 1},
-        {0, 10, 1}, {2, 100, 0},   {300, 5000, 1}, {4, 100, SIZE_MAX}, {4, 100, SIZE_MAX / 2 + 1},
+    static const struct {
+        unsigned threads;
+        size_t count, grain;
+    } cases[] = {
+        {1, 10, 3}, {4, 10000, 1}, {4, 10000, 7}, {3, 9999, 100}, {8, 3, 1},          {2, 5, 1000},
+        {4, 0, 1},  {0, 10, 1},    {2, 100, 0},   {300, 5000, 1}, {4, 100, SIZE_MAX}, {4, 100, SIZE_MAX / 2 + 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct tally *tally = new_tally();
@@ -85,7 +88,11 @@ static void a_failure_stops_the_dealing(void **state) {
     free(tally);
 }
 
-struct listener { unsigned calls, stop_at; double last; bool sane; };
+struct listener {
+    unsigned calls, stop_at;
+    double last;
+    bool sane;
+};
 
 static bool listen(void *user, const struct gn_progress *progress) {
     struct listener *listener = user;
@@ -97,9 +104,13 @@ static bool listen(void *user, const struct gn_progress *progress) {
 
 static void progress_is_told_and_can_cancel(void **state) {
     (void)state;
-    static const struct { unsigned threads, stop_at; size_t count; bool others_sleep; } cases[] = {
-        {1, 0, 100, false}, {2, 0, 100, false}, {1, 2, 1000, false}, {2, 2, 1000, false},
-        {2, 0, 64, true}, // thread 0 is done at once and waits for the other, and tells of it
+    static const struct {
+        unsigned threads, stop_at;
+        size_t count;
+        bool others_sleep;
+    } cases[] = {
+        {1, 0, 100, false},  {2, 0, 100, false}, {1, 2, 1000, false},
+        {2, 2, 1000, false}, {2, 0, 64, true}, // thread 0 is done at once and waits for the other, and tells of it
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct tally *tally = new_tally();
@@ -115,8 +126,10 @@ static void progress_is_told_and_can_cancel(void **state) {
         assert_true(done == (cases[i].stop_at == 0));
         assert_int_equal(error.status, done ? GN_OK : GN_CANCELLED);
         assert_true(listener.sane);
-        if (done) assert_true(each_once(tally, cases[i].count));
-        else assert_int_equal(listener.calls, cases[i].stop_at);
+        if (done)
+            assert_true(each_once(tally, cases[i].count));
+        else
+            assert_int_equal(listener.calls, cases[i].stop_at);
         // The other thread of the last case may not have got a chunk at all.
         if (tally->highest_thread > 0 || !cases[i].others_sleep) assert_in_range(listener.calls, 1, 2 + (unsigned)(seconds / 0.05));
         if (!done) assert_true(tally->chunks < cases[i].count);

@@ -77,8 +77,10 @@ static uint32_t threshold_of(encoder *encode, enum transfer transfer, unsigned c
     uint32_t below = 0, above = 0x3f800000; // 0 and 1
     while (above - below > 1) {
         uint32_t middle = below + (above - below) / 2;
-        if (encode(transfer, float_of(middle)) >= code) above = middle;
-        else below = middle;
+        if (encode(transfer, float_of(middle)) >= code)
+            above = middle;
+        else
+            below = middle;
     }
     return above;
 }
@@ -131,9 +133,12 @@ static void codes_never_fall(void **state) {
 
 static void odd_numbers_are_clamped(void **state) {
     (void)state;
-    const struct { float value; uint8_t srgb, linear; } cases[] = {
-        {NAN, 0, 0},          {-NAN, 0, 0},           {INFINITY, 255, 255}, {-INFINITY, 0, 0},    {0.0f, 0, 0},     {-0.0f, 0, 0},
-        {0x1p-149f, 0, 0},    {-1, 0, 0},             {1, 255, 255},        {0x1.fffffep-1f, 255, 255}, {2, 255, 255}, {0x1.fffffep127f, 255, 255},
+    const struct {
+        float value;
+        uint8_t srgb, linear;
+    } cases[] = {
+        {NAN, 0, 0},       {-NAN, 0, 0}, {INFINITY, 255, 255}, {-INFINITY, 0, 0},          {0.0f, 0, 0},  {-0.0f, 0, 0},
+        {0x1p-149f, 0, 0}, {-1, 0, 0},   {1, 255, 255},        {0x1.fffffep-1f, 255, 255}, {2, 255, 255}, {0x1.fffffep127f, 255, 255},
         {0.5f, 188, 128}, // 127.5 is rounded up
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -155,11 +160,8 @@ static void decoding_is_exact_and_inverse(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_step_is_exact),
-        cmocka_unit_test(any_number_has_its_code),
-        cmocka_unit_test(codes_never_fall),
-        cmocka_unit_test(odd_numbers_are_clamped),
-        cmocka_unit_test(decoding_is_exact_and_inverse),
+        cmocka_unit_test(every_step_is_exact),     cmocka_unit_test(any_number_has_its_code),       cmocka_unit_test(codes_never_fall),
+        cmocka_unit_test(odd_numbers_are_clamped), cmocka_unit_test(decoding_is_exact_and_inverse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

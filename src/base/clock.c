@@ -1,3 +1,4 @@
+// Time from CLOCK_MONOTONIC.
 #include "base/clock.h"
 
 #include <time.h>

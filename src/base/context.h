@@ -11,8 +11,8 @@
 #include "gnomon.h"
 
 struct context {
-    struct gn_host host;        // callbacks may be NULL
-    struct gn_error *error;     // never NULL
+    struct gn_host host;    // callbacks may be NULL
+    struct gn_error *error; // never NULL
 };
 
 // A context that lends what *host lends (NULL: nothing) and reports to *error, which is cleared.

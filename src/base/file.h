@@ -7,7 +7,10 @@
 #include "base/context.h"
 
 // A whole file in memory; data[size] is a zero byte that does not count. Zeroed is empty; finish accepts that.
-struct file_bytes { char *data; size_t size; };
+struct file_bytes {
+    char *data;
+    size_t size;
+};
 
 // Reads a file. `blame` is the status on failure: GN_SCENE for assets, GN_IO for other inputs. The message names the path and the
 // cause ("no such file", "is a directory", …). A pipe or device is read to its end, but not past 256 MiB.
@@ -15,7 +18,10 @@ bool file_read(struct file_bytes *out, struct context *ctx, const char *path, en
 void file_bytes_finish(struct file_bytes *bytes);
 
 // An output on its way: written to a temporary name in the same folder.
-struct output_file { FILE *stream; char *path, *temporary; };
+struct output_file {
+    FILE *stream;
+    char *path, *temporary;
+};
 
 // Opens the temporary. Fails (GN_IO) when the folder is missing or not writable, or when a file of that name is there and read-only. An
 // existing non-regular target such as /dev/null or a pipe is written directly. A link is followed. "-" is not special.

@@ -40,7 +40,8 @@ bool image_init_announced(struct image *out, struct context *ctx, const char *pa
 
 bool image_check_writable(const struct image *image, struct context *ctx, const char *path) {
     if (image->pixels && image->width > 0 && image->height > 0 && (image->channels == 1 || image->channels == 3)) return true;
-    return fail(ctx, GN_INTERNAL, "%s: cannot hold an image of %u × %u pixels and %u channels", path, image->width, image->height, image->channels);
+    return fail(ctx, GN_INTERNAL, "%s: cannot hold an image of %u × %u pixels and %u channels", path, image->width, image->height,
+                image->channels);
 }
 
 bool image_read(struct image *out, struct context *ctx, const char *path) {

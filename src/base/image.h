@@ -7,7 +7,7 @@
 // Row-major, top row first, channels interleaved. Zeroed is empty.
 struct image {
     uint32_t width, height, channels;
-    float *pixels;              // width × height × channels
+    float *pixels; // width × height × channels
 };
 
 bool image_init(struct image *out, struct context *ctx, uint32_t width, uint32_t height, uint32_t channels, const char *what);
@@ -29,7 +29,7 @@ double srgb_decode(double encoded);
 // One named layer of an EXR file: image with 1, 2 or 3 channels; channel names in the file are given by `names`.
 struct image_layer {
     const struct image *image;
-    const char *names[4];       // one for each channel, e.g. "R","G","B" or "Z" or "normal.X"
+    const char *names[4]; // one for each channel, e.g. "R","G","B" or "Z" or "normal.X"
 };
 
 // Writers; each whole or not there (GN_IO). PNG takes 1 or 3 channels, PFM 1 or 3; the layers of an EXR are of one size.
@@ -37,9 +37,9 @@ bool image_write_png(const struct image *image, struct context *ctx, const char 
 bool image_write_pfm(const struct image *image, struct context *ctx, const char *path);
 bool image_write_exr(const struct image_layer *layers, size_t count, struct context *ctx, const char *path);
 
-// Reads .png (8 or 16 bit, grey or colour, decoded from sRGB to linear, unless the file says that its gamma is 1; alpha is ignored), .exr
-// (channels R, G, B, or Y; half, float or uint; scan lines or tiles, of which the finest level is read) or .pfm (its scale is ignored), by its
-// content; 3 channels. GN_IO with the path and what is wrong.
+// Reads .png (8 or 16 bit, grey or colour, decoded from sRGB to linear, unless the file says that its gamma is 1; alpha is ignored),
+// .exr (channels R, G, B, or Y; half, float or uint; scan lines or tiles, of which the finest level is read) or .pfm (its scale is
+// ignored), by its content; 3 channels. GN_IO with the path and what is wrong.
 bool image_read(struct image *out, struct context *ctx, const char *path);
 
 #endif

@@ -14,7 +14,7 @@ struct exr_memory {
     const char *source;
     unsigned char *data;
     size_t size, capacity;
-    char message[256];      // the library's first complaint
+    char message[256]; // the library's first complaint
 };
 
 // Memory for the library, zeroed: it leaves parts unwritten when a damaged file ends early.
@@ -44,7 +44,10 @@ static int64_t memory_write(exr_const_context_t exr, void *user, const void *byt
 // While writing, the library calls this with its own lock held, so nothing can be asked of it; the result code says enough.
 static void drop_message(exr_const_context_t exr, exr_result_t code, const char *text) { (void)exr, (void)code, (void)text; }
 
-struct exr_layers { const struct image_layer *layers; size_t count; };
+struct exr_layers {
+    const struct image_layer *layers;
+    size_t count;
+};
 
 static exr_result_t describe(exr_context_t exr, const struct exr_layers *all) {
     const struct image *first = all->layers[0].image;
@@ -107,7 +110,9 @@ static exr_result_t exr_encode(struct exr_memory *memory, const struct exr_layer
 
 static bool check_layers(const struct exr_layers *all, struct context *ctx, const char *path) {
     const struct image *first = all->count > 0 ? all->layers[0].image : NULL;
-    bool fine = first && first->width > 0 && first->height > 0 && first->width <= INT32_MAX / (4 * sizeof(float)) && first->height < INT32_MAX;
+    // The library counts in int32_t, and the bytes of a line, too.
+    bool fine = first && first->width > 0 && first->height > 0 && first->height < INT32_MAX;
+    fine = fine && first->width <= INT32_MAX / (4 * sizeof(float));
     for (size_t i = 0; fine && i < all->count; i++) {
         const struct image *image = all->layers[i].image;
         fine = image->pixels && image->width == first->width && image->height == first->height && image->channels <= 4;
@@ -123,8 +128,8 @@ bool image_write_exr(const struct image_layer *layers, size_t count, struct cont
     if (!check_layers(&all, ctx, path) || !output_begin(&file, ctx, path)) return false;
     exr_result_t result = exr_encode(&memory, &all);
     if (result) {
-        fail(ctx, result == EXR_ERR_OUT_OF_MEMORY || result == EXR_ERR_WRITE_IO ? GN_LIMIT : GN_INTERNAL, "%s: cannot be encoded as EXR: %s",
-             path, exr_get_default_error_message(result));
+        bool memory_ended = result == EXR_ERR_OUT_OF_MEMORY || result == EXR_ERR_WRITE_IO;
+        fail(ctx, memory_ended ? GN_LIMIT : GN_INTERNAL, "%s: cannot be encoded as EXR: %s", path, exr_get_default_error_message(result));
         goto fail;
     }
     if (!output_write(&file, ctx, memory.data, memory.size)) goto fail;
@@ -138,7 +143,8 @@ fail:
 
 // ---- reading
 
-static int64_t memory_read(exr_const_context_t exr, void *user, void *out, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t error) {
+static int64_t memory_read(exr_const_context_t exr, void *user, void *out, uint64_t size, uint64_t offset,
+                           exr_stream_error_func_ptr_t error) {
     (void)exr, (void)error;
     const struct exr_memory *memory = user;
     if (offset >= memory->size) return 0;
@@ -221,7 +227,8 @@ static exr_result_t decode_chunk(const struct exr_reader *reader, const struct i
                                  const exr_chunk_info_t *chunk, int64_t x, int64_t y) {
     if (x + chunk->width > out->width || y + chunk->height > out->height || chunk->packed_size == 0) return EXR_ERR_CORRUPT_CHUNK;
     bool first = decoder->context == NULL;
-    exr_result_t result = first ? exr_decoding_initialize(reader->exr, 0, chunk, decoder) : exr_decoding_update(reader->exr, 0, chunk, decoder);
+    exr_result_t result =
+        first ? exr_decoding_initialize(reader->exr, 0, chunk, decoder) : exr_decoding_update(reader->exr, 0, chunk, decoder);
     if (result) return result;
     // A channel of the file can feed several of ours (Y), so only the first is decoded to; spread_grey copies the others.
     for (int16_t i = 0; i < decoder->channel_count; i++) {

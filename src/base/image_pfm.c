@@ -9,7 +9,11 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "rows are written as t
 
 // ---- reading
 
-struct pfm_header { uint32_t width, height, channels; bool big_endian; size_t size; };
+struct pfm_header {
+    uint32_t width, height, channels;
+    bool big_endian;
+    size_t size;
+};
 
 static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
@@ -75,8 +79,8 @@ bool image_decode_pfm(struct image *out, struct context *ctx, const char *path, 
     uint64_t row = (uint64_t)header.width * header.channels * 4, need = row * header.height, have = bytes->size - header.size;
     if (have != need) {
         image_finish(out);
-        return fail(ctx, GN_IO, "%s: has %ju bytes of pixels where %u × %u pixels of %u channels need %ju", path, (uintmax_t)have, header.width,
-                    header.height, header.channels, (uintmax_t)need);
+        return fail(ctx, GN_IO, "%s: has %ju bytes of pixels where %u × %u pixels of %u channels need %ju", path, (uintmax_t)have,
+                    header.width, header.height, header.channels, (uintmax_t)need);
     }
     const unsigned char *rows = (const unsigned char *)bytes->data + header.size;
     float *pixel = out->pixels;

@@ -23,7 +23,9 @@ _Static_assert(sizeof(struct gn_hit) == 24 && offsetof(struct gn_hit, v) == 8 &&
 // ---- scanning
 
 // The header's text not yet read.
-struct scan { const char *at, *end; };
+struct scan {
+    const char *at, *end;
+};
 
 static void skip_space(struct scan *scan) {
     while (scan->at < scan->end && (*scan->at == ' ' || *scan->at == '\t' || *scan->at == '\n' || *scan->at == '\r')) scan->at++;
@@ -133,8 +135,10 @@ static bool parse_shape(struct header *header) {
 
 // Puts a value where its key says. False for a key that is unknown or stands there twice.
 static bool header_set(struct header *header, struct scan key, struct scan value) {
-    struct { const char *name; struct scan *place; } keys[] = {
-        {"descr", &header->descr}, {"fortran_order", &header->order}, {"shape", &header->shape}};
+    struct {
+        const char *name;
+        struct scan *place;
+    } keys[] = {{"descr", &header->descr}, {"fortran_order", &header->order}, {"shape", &header->shape}};
     for (size_t i = 0; i < 3; i++) {
         if (!spans_equal(key, scan_of(keys[i].name))) continue;
         if (keys[i].place->at) return false;

@@ -29,7 +29,11 @@ struct loop {
     atomic_bool failed;
 };
 
-struct worker { struct loop *loop; unsigned number; pthread_t thread; };
+struct worker {
+    struct loop *loop;
+    unsigned number;
+    pthread_t thread;
+};
 
 // Runs one chunk; false when there is none left or the loop has failed.
 static bool loop_step(struct loop *loop, unsigned thread) {
@@ -37,8 +41,10 @@ static bool loop_step(struct loop *loop, unsigned thread) {
     size_t begin = atomic_fetch_add(&loop->next, loop->grain);
     if (begin >= loop->count) return false;
     size_t end = loop->count - begin < loop->grain ? loop->count : begin + loop->grain;
-    if (!loop->body(loop->data, begin, end, thread)) atomic_store(&loop->failed, true);
-    else atomic_fetch_add(&loop->done, end - begin);
+    if (!loop->body(loop->data, begin, end, thread))
+        atomic_store(&loop->failed, true);
+    else
+        atomic_fetch_add(&loop->done, end - begin);
     return true;
 }
 
@@ -49,7 +55,11 @@ static void *work(void *argument) {
 }
 
 // Tells the caller of a loop how far it is, not more often than every REPORT_SECONDS.
-struct report { struct context *ctx; const char *stage; double start, last; };
+struct report {
+    struct context *ctx;
+    const char *stage;
+    double start, last;
+};
 
 #define REPORT_SECONDS 0.05
 
@@ -96,8 +106,8 @@ static struct loop loop_of(size_t count, size_t grain, bool (*body)(void *data, 
     return (struct loop){.count = count, .grain = grain, .body = body, .data = data};
 }
 
-bool parallel_for(unsigned threads, size_t count, size_t grain,
-                  bool (*body)(void *data, size_t begin, size_t end, unsigned thread), void *data) {
+bool parallel_for(unsigned threads, size_t count, size_t grain, bool (*body)(void *data, size_t begin, size_t end, unsigned thread),
+                  void *data) {
     struct loop loop = loop_of(count, grain, body, data);
     struct report silent = {0};
     return loop_run(&loop, threads, &silent);

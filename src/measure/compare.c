@@ -6,10 +6,13 @@
 
 #include "measure/flip.h"
 
-struct difference { double largest, squares; bool finite; };
+struct difference {
+    double largest, squares;
+    bool finite;
+};
 
-// The difference of two pixels. Where either has a channel that is NaN or infinite there is no number for it; `largest` is then 0 for pixels
-// that are the same nevertheless, else infinite.
+// The difference of two pixels. Where either has a channel that is NaN or infinite there is no number for it; `largest` is then 0 for
+// pixels that are the same nevertheless, else infinite.
 static struct difference pixel_difference(const float a[3], const float b[3]) {
     struct difference out = {.finite = true};
     bool same = true;
@@ -47,8 +50,8 @@ static void compare_pixels(struct gn_compare_result *out, const struct image *a,
     out->psnr_db = out->rmse > 0 ? -20 * log10(out->rmse) : INFINITY;
 }
 
-bool compare_images(struct gn_compare_result *out, struct image *flip_map, struct context *ctx, const struct image *a, const struct image *b,
-                    double tolerance) {
+bool compare_images(struct gn_compare_result *out, struct image *flip_map, struct context *ctx, const struct image *a,
+                    const struct image *b, double tolerance) {
     memset(out, 0, sizeof *out);
     if (flip_map) *flip_map = (struct image){0};
     if (a->channels != 3 || b->channels != 3)
@@ -60,7 +63,9 @@ bool compare_images(struct gn_compare_result *out, struct image *flip_map, struc
     out->height = a->height;
     compare_pixels(out, a, b, tolerance);
     if (!flip_compare(&map, &out->flip, ctx, a, b)) return false;
-    if (flip_map) *flip_map = map;
-    else image_finish(&map);
+    if (flip_map)
+        *flip_map = map;
+    else
+        image_finish(&map);
     return true;
 }

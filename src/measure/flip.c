@@ -80,16 +80,21 @@ static const int PLANE_CHANNEL[PLANE_COUNT] = {0, 1, 2, 2, 0, 0, 0};
 // What is then filtered along columns: the plane, and the filter.
 enum { RESPONSE_COUNT = 8 };
 enum { EDGE_X = 4, EDGE_Y, POINT_X, POINT_Y };
-static const enum plane RESPONSE[RESPONSE_COUNT][2] = {{ACHROMATIC, ACHROMATIC}, {RED_GREEN, RED_GREEN}, {BLUE_YELLOW, BLUE_YELLOW},
-                                                       {BLUE_YELLOW_WIDE, BLUE_YELLOW_WIDE}, {EDGE, SMOOTH}, {SMOOTH, EDGE},
-                                                       {POINT, SMOOTH}, {SMOOTH, POINT}};
+static const enum plane RESPONSE[RESPONSE_COUNT][2] = {{ACHROMATIC, ACHROMATIC},
+                                                       {RED_GREEN, RED_GREEN},
+                                                       {BLUE_YELLOW, BLUE_YELLOW},
+                                                       {BLUE_YELLOW_WIDE, BLUE_YELLOW_WIDE},
+                                                       {EDGE, SMOOTH},
+                                                       {SMOOTH, EDGE},
+                                                       {POINT, SMOOTH},
+                                                       {SMOOTH, POINT}};
 
 struct flip {
     const struct image *images[2];
     struct image *map;
     double filters[PLANE_COUNT][TAPS];
-    double share[2];    // of the two Gaussians in the blue-yellow filter
-    double largest;     // colour difference that there is, to the power 0.7
+    double share[2]; // of the two Gaussians in the blue-yellow filter
+    double largest;  // colour difference that there is, to the power 0.7
 };
 
 // A Gaussian of weight 1 in all. Returns the sum before.
@@ -151,7 +156,9 @@ static void filter_columns(double *out, const double *rows, const double taps[TA
 // ---- the error of a pixel
 
 // What both images have at a pixel.
-struct sight { double lab[3], edge, point; };
+struct sight {
+    double lab[3], edge, point;
+};
 
 static struct sight see(const struct flip *flip, const double *responses, size_t width, size_t x) {
     double r[RESPONSE_COUNT];
@@ -175,7 +182,8 @@ static double feature_error(const struct sight *a, const struct sight *b) {
 
 // ---- bands of rows
 
-// For an image and the rows of a band with RADIUS more on either side: PLANE_COUNT planes, filtered along rows. At the border, pixels repeat.
+// For an image and the rows of a band with RADIUS more on either side: PLANE_COUNT planes, filtered along rows. At the border, pixels
+// repeat.
 static void filter_band(const struct flip *flip, const struct image *image, size_t first, size_t rows, double *planes, double *padded) {
     size_t width = image->width, stride = width + 2 * RADIUS;
     for (size_t i = 0; i < rows; i++) {
@@ -211,8 +219,10 @@ static bool compare_band(void *data, size_t begin, size_t end, unsigned thread) 
     for (size_t k = 0; k < 2; k++) filter_band(flip, flip->images[k], begin, rows, planes[k], padded);
     for (size_t y = 0; y < end - begin; y++) {
         for (size_t k = 0; k < 2; k++)
-            for (size_t i = 0; i < RESPONSE_COUNT; i++)
-                filter_columns(responses[k] + i * width, planes[k] + RESPONSE[i][0] * plane + y * width, flip->filters[RESPONSE[i][1]], width);
+            for (size_t i = 0; i < RESPONSE_COUNT; i++) {
+                const double *above = planes[k] + RESPONSE[i][0] * plane + y * width;
+                filter_columns(responses[k] + i * width, above, flip->filters[RESPONSE[i][1]], width);
+            }
         compare_row(flip, responses, flip->map->pixels + (begin + y) * width, width);
     }
     free(memory);

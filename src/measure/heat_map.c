@@ -4,7 +4,7 @@
 #include "measure/compare.h"
 
 // sRGB codes at equal steps from 0 to 1; between them codes are interpolated.
-static const uint8_t ANCHORS[][3] = {{0, 0, 6},     {36, 14, 72},  {92, 24, 120},  {150, 38, 122}, {206, 62, 104},
+static const uint8_t ANCHORS[][3] = {{0, 0, 6},      {36, 14, 72},   {92, 24, 120},   {150, 38, 122}, {206, 62, 104},
                                      {242, 104, 82}, {252, 158, 92}, {254, 210, 136}, {255, 250, 205}};
 enum { INTERVALS = sizeof ANCHORS / sizeof *ANCHORS - 1 };
 
