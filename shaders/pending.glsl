@@ -1,5 +1,5 @@
 // Pending samples of the exact tier: a ray that the error bounds leave undecided is written down as a question; the sample is done again when the
-// host has answered it. Layout: BINDING_PENDING in shared.h. In other tiers all of this is compiled out.
+// second stage or the host has answered it. Layout: BINDING_PENDING in shared.h. In other tiers all of this is compiled out.
 #ifndef PENDING_GLSL
 #define PENDING_GLSL
 #include "constants.glsl"
@@ -31,7 +31,7 @@ bool pending_find(out pending_sample pending, out ivec2 at) {
     pending.record = record;
     pending.answers = head.z;
     at = ivec2(head.xy);
-    return head.w == PENDING_ASKS;
+    return head.w == PENDING_ANSWERED;
 }
 
 // The answer for ray `number` of the sample, if it has been asked for. Answers come in the order of their rays.
@@ -49,8 +49,8 @@ bool pending_answer(inout pending_sample pending, uint number, out hit h) {
 
 void pending_ask(inout pending_sample pending, ray r, bool any, uint number) {
     pending.asks = true;
-    pending.question[0] = uvec4(floatBitsToUint(r.o), r.self);
-    pending.question[1] = uvec4(floatBitsToUint(r.d), floatBitsToUint(r.tmax));
+    pending.question[0] = uvec4(floatBitsToUint(vec3(r.o)), r.self);
+    pending.question[1] = uvec4(floatBitsToUint(vec3(r.d)), floatBitsToUint(float(r.tmax)));
     pending.question[2] = uvec4(number, any ? 1u : 0u, 0u, 0u);
 }
 

@@ -1,9 +1,10 @@
 // A ray and what it hits, in device units.
 //
 // A ray is brought to a safe scale when it is made: its direction is multiplied by the power of two that brings the largest component into
-// [1, 2). That is exact, and keeps products of a predicate away from overflow and underflow, whatever the caller's units.
+// [1, 2). That is exact, and keeps products of a predicate away from overflow and underflow, whatever the caller's units. (fp64 has the range without.)
 #ifndef RAY_GLSL
 #define RAY_GLSL
+#include "real.glsl"
 #include "shared.h"
 
 // The primitive that a ray leaves: it is not hit again where it starts. SELF_NONE for rays from nowhere.
@@ -11,26 +12,27 @@
 #define SELF_SPHERE 0x80000000u     // or-ed to the number of a sphere; else a triangle's
 
 struct ray {
-    vec3 o;
-    vec3 d;             // largest component in [1, 2)
-    float tmin, tmax;   // open interval, in units of d
-    float t_scale;      // multiply t by this to have it in units of the direction that was given
+    real3 o;
+    real3 d;             // largest component in [1, 2)
+    real tmin, tmax;   // open interval, in units of d
+    real t_scale;      // multiply t by this to have it in units of the direction that was given
     uint self;
 };
 
 struct hit {
-    float t, u, v;      // +inf, 0, 0 for a miss; t in units of the ray's d
+    real t, u, v;      // +inf, 0, 0 for a miss; t in units of the ray's d
     uint primitive;     // SELF_NONE for a miss; else as `self` above: number in leaf order
     int object, index;  // object, and the primitive's number in it; -1 for a miss
 };
-
-#define INFINITY uintBitsToFloat(0x7f800000u)
 
 hit hit_none() { return hit(INFINITY, 0.0, 0.0, SELF_NONE, -1, -1); }
 
 bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 bool is_finite(vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+#ifdef FP64
+bool is_finite(double x) { return abs(x) <= 1.797e308lf; }
+#endif
 
 // 2^exponent for -126 <= exponent <= 127.
 float power_of_two(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
@@ -39,6 +41,9 @@ float power_of_two(int exponent) { return uintBitsToFloat(uint(exponent + 127) <
 int exponent_of(float x) { return int((floatBitsToUint(x) >> 23) & 0xffu) - 127; }
 
 // A ray through o (device units) along d (any scale, not zero, finite), for t in units of d as given.
+#ifdef FP64
+ray ray_make(dvec3 o, dvec3 d, double tmin, double tmax, uint self) { return ray(o, d, tmin, tmax, 1.0lf, self); }
+#else
 ray ray_make(vec3 o, vec3 d, float tmin, float tmax, uint self) {
     float largest = max(abs(d.x), max(abs(d.y), abs(d.z)));
     float lift = 1.0;
@@ -51,5 +56,6 @@ ray ray_make(vec3 o, vec3 d, float tmin, float tmax, uint self) {
     float down = power_of_two(exponent);
     return ray(o, (d * lift) * up, (tmin * down) / lift, (tmax * down) / lift, up * lift, self);
 }
+#endif
 
 #endif

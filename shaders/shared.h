@@ -24,9 +24,10 @@
 #define TIERS(X)                                                                 \
     X(0, FAST,   "fast",   "what a good plain renderer does")                    \
     X(1, ROBUST, "robust", "watertight, error-bounded offsets, safe boxes")      \
-    X(2, EXACT,  "exact",  "every decision as in exact arithmetic")
+    X(2, EXACT,  "exact",  "every decision as in exact arithmetic")             \
+    X(3, FP64,   "fp64",   "the whole path in double, on devices that have it")
 
-#define TIER_COUNT 3
+#define TIER_COUNT 4
 
 // Numbers of the specialization constants that are no effects.
 #define CONSTANT_TIER       32
@@ -53,7 +54,8 @@
 #define BINDING_HITS       14       // trace kernel: storage buffer, 6 words per ray, struct gn_hit
 #define BINDING_GLOBALS    15       // global words
 #define BINDING_PENDING    16       // exact tier: storage buffer, struct pending
-#define BINDING_COUNT      17
+#define BINDING_LIST       17       // exact tier, trace kernel: storage buffer, numbers of undecided rays
+#define BINDING_COUNT      18
 
 // Node: 4 word4. A node holds the boxes of its two children and what they are.
 //   0: left min.xyz,  left ref      1: left max.xyz,  right ref
@@ -92,6 +94,7 @@
 #define PENDING_WORDS (4 + 2 * PENDING_ANSWERS)
 #define PENDING_DONE 0u
 #define PENDING_ASKS 1u
+#define PENDING_ANSWERED 2u
 
 // Stack entries of a traversal: BVH_MAX_DEPTH + 2.
 #define STACK_SIZE 64
@@ -103,6 +106,7 @@
 // Flags of a hit, as in gnomon.h.
 #define HIT_INVALID 1u
 #define HIT_UNDECIDED 2u
+#define HIT_OPEN 0x80000000u        // not decided yet: a later stage's; never leaves the program
 
 // ------------------------------------------------------------------------------------------------------ dialects of C and GLSL
 #ifdef GL_core_profile
@@ -148,6 +152,7 @@ struct trace_args {
     uint first, count;      // rays
     uint root;              // reference of the root
     float scale;            // factor from scene units to device units, a power of two
+    uint list_first;        // exact tier: entries of BINDING_LIST that earlier dispatches have filled
 };
 
 // What a dispatch reports; the host zeroes it before.
@@ -155,7 +160,8 @@ struct status {
     uint rays;              // shot, all kinds
     uint hits;              // trace kernel: rays that hit
     uint nonfinite;         // samples dropped
-    uint undecided;         // rays
+    uint undecided;         // rays that this stage left undecided
+    uint decided;           // exact tier, second stage: pending rays that it decided
     uint unfinished;        // invocations that ran out of CONSTANT_MAX_STEPS with work left (they go on when dispatched again)
     uint stuck;             // invocations that ran out without finishing one sample: an error
 };

@@ -13,26 +13,26 @@ layout(set = 0, binding = BINDING_INDICES) uniform usamplerBuffer index_words;
 layout(set = 0, binding = BINDING_NORMALS) uniform usamplerBuffer normal_words;
 
 struct surface {
-    vec3 p;         // device units
-    vec3 error;     // bound of the error of each component of p
-    vec3 ng, n;     // unit geometric and shading normal, on the viewer's side
+    real3 p;         // device units
+    real3 error;     // bound of the error of each component of p
+    real3 ng, n;     // unit geometric and shading normal, on the viewer's side
     uint material;
     uint primitive; // as a hit has it
 };
 
-vec3 normalize_tier(vec3 v) { return TIER == TIER_FAST ? normalize_fast(v) : normalize_robust(v); }
+real3 normalize_tier(real3 v) { return TIER == TIER_FAST ? normalize_fast(v) : normalize_robust(v); }
 
-vec3 leave_surface(surface s) { return TIER == TIER_FAST ? leave_fast(s.p, s.ng) : leave_robust(s.p, s.error, s.ng); }
+real3 leave_surface(surface s) { return TIER == TIER_FAST ? leave_fast(s.p, s.ng) : leave_robust(s.p, s.error, s.ng); }
 
 // The interpolated vertex normal, or ng where the mesh has none or the sum vanishes.
-vec3 smooth_normal(hit h, vec3 ng) {
+real3 smooth_normal(hit h, real3 ng) {
     uint first = texelFetch(object_words, h.object * OBJECT_WORDS).x;
     if (first == NO_NORMALS) return ng;
     uvec4 vertex = texelFetch(index_words, int(first) + h.index);
-    vec3 n0 = uintBitsToFloat(texelFetch(normal_words, int(vertex.x)).xyz);
-    vec3 n1 = uintBitsToFloat(texelFetch(normal_words, int(vertex.y)).xyz);
-    vec3 n2 = uintBitsToFloat(texelFetch(normal_words, int(vertex.z)).xyz);
-    vec3 n = normalize_robust((1.0 - h.u - h.v) * n0 + h.u * n1 + h.v * n2);
+    real3 n0 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.x)).xyz));
+    real3 n1 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.y)).xyz));
+    real3 n2 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.z)).xyz));
+    real3 n = normalize_robust((1.0 - h.u - h.v) * n0 + h.u * n1 + h.v * n2);
     return dot(n, n) > 0.5 ? n : ng;
 }
 
@@ -41,13 +41,13 @@ surface triangle_surface(hit h) {
     uvec4 w0 = triangle_word(TRIANGLE_WORDS * h.primitive);
     uvec4 w1 = triangle_word(TRIANGLE_WORDS * h.primitive + 1u);
     uvec4 w2 = triangle_word(TRIANGLE_WORDS * h.primitive + 2u);
-    vec3 v0 = uintBitsToFloat(w0.xyz);
-    precise vec3 e1 = uintBitsToFloat(w1.xyz) - v0;
-    precise vec3 e2 = uintBitsToFloat(w2.xyz) - v0;
-    precise vec3 p = v0 + (h.u * e1 + h.v * e2);
-    vec3 error = (abs(h.u * e1) + abs(h.v * e2)) * 2.3841858e-7 + abs(p) * 1.1920929e-7;
-    vec3 ng = normalize_tier(cross_precise(e1, e2));
-    vec3 n = HAS_SMOOTH_NORMALS ? smooth_normal(h, ng) : ng;
+    real3 v0 = real3(uintBitsToFloat(w0.xyz));
+    precise real3 e1 = real3(uintBitsToFloat(w1.xyz)) - v0;
+    precise real3 e2 = real3(uintBitsToFloat(w2.xyz)) - v0;
+    precise real3 p = v0 + (h.u * e1 + h.v * e2);
+    real3 error = (abs(h.u * e1) + abs(h.v * e2)) * (4.0 * REAL_UNIT) + abs(p) * (2.0 * REAL_UNIT);
+    real3 ng = normalize_tier(cross_precise(e1, e2));
+    real3 n = HAS_SMOOTH_NORMALS ? smooth_normal(h, ng) : ng;
     return surface(p, error, ng, n, w2.w, h.primitive);
 }
 
@@ -56,11 +56,11 @@ surface sphere_surface(ray r, hit h) {
     uint number = h.primitive & ~SELF_SPHERE;
     uvec4 w0 = sphere_word(SPHERE_WORDS * number);
     uvec4 w1 = sphere_word(SPHERE_WORDS * number + 1u);
-    vec3 center = uintBitsToFloat(w0.xyz);
-    float radius = uintBitsToFloat(w0.w);
-    vec3 n = normalize_tier((r.o - center) + h.t * r.d);
-    precise vec3 p = center + radius * n;
-    vec3 error = vec3(radius * 4.7683716e-7) + abs(p) * 1.1920929e-7;
+    real3 center = real3(uintBitsToFloat(w0.xyz));
+    real radius = real(uintBitsToFloat(w0.w));
+    real3 n = normalize_tier((r.o - center) + h.t * r.d);
+    precise real3 p = center + radius * n;
+    real3 error = real3(radius * (8.0 * REAL_UNIT)) + abs(p) * (2.0 * REAL_UNIT);
     return surface(p, error, n, n, w1.y, h.primitive);
 }
 
@@ -79,7 +79,7 @@ phong_material material_at(uint number) {
     uvec4 w0 = texelFetch(material_words, int(MATERIAL_WORDS * number));
     uvec4 w1 = texelFetch(material_words, int(MATERIAL_WORDS * number + 1u));
     uvec4 w2 = texelFetch(material_words, int(MATERIAL_WORDS * number + 2u));
-    return phong_material(uintBitsToFloat(w0.xyz), uintBitsToFloat(w1.xyz), uintBitsToFloat(w2.xyz), uintBitsToFloat(w0.w));
+    return phong_material(real3(uintBitsToFloat(w0.xyz)), real3(uintBitsToFloat(w1.xyz)), real3(uintBitsToFloat(w2.xyz)), real(uintBitsToFloat(w0.w)));
 }
 
 #endif

@@ -5,34 +5,34 @@
 
 // T. Möller and B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997. Two-sided; a determinant of 0 is a miss, any other is divided by.
 // Returns (t, u, v); t = +inf for a miss. NaN anywhere is a miss.
-vec3 triangle_fast(vec3 o, vec3 d, vec3 v0, vec3 v1, vec3 v2) {
-    vec3 e1 = v1 - v0, e2 = v2 - v0;
-    vec3 p = cross(d, e2);
-    float det = dot(e1, p);
-    vec3 s = o - v0;
-    vec3 q = cross(s, e1);
-    float inverse = 1.0 / det;
-    float u = dot(s, p) * inverse;
-    float v = dot(d, q) * inverse;
-    float t = dot(e2, q) * inverse;
+real3 triangle_fast(real3 o, real3 d, real3 v0, real3 v1, real3 v2) {
+    real3 e1 = v1 - v0, e2 = v2 - v0;
+    real3 p = cross(d, e2);
+    real det = dot(e1, p);
+    real3 s = o - v0;
+    real3 q = cross(s, e1);
+    real inverse = 1.0 / det;
+    real u = dot(s, p) * inverse;
+    real v = dot(d, q) * inverse;
+    real t = dot(e2, q) * inverse;
     bool inside = det != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0;
-    return inside ? vec3(t, u, v) : vec3(INFINITY, 0.0, 0.0);
+    return inside ? real3(t, u, v) : real3(INFINITY, 0.0, 0.0);
 }
 
 // Geometric form: the closest point of the line, then the half chord. Returns both t, smaller first; (+inf, +inf) for a miss.
-vec2 sphere_fast(vec3 o, vec3 d, vec3 center, float radius) {
-    vec3 l = center - o;
-    float inverse = 1.0 / dot(d, d);
-    float middle = dot(l, d) * inverse;
-    vec3 across = l - middle * d;
-    float rest = radius * radius - dot(across, across);
-    float chord = sqrt(max(rest, 0.0) * inverse);
-    return rest >= 0.0 ? vec2(middle - chord, middle + chord) : vec2(INFINITY);
+real2 sphere_fast(real3 o, real3 d, real3 center, real radius) {
+    real3 l = center - o;
+    real inverse = 1.0 / dot(d, d);
+    real middle = dot(l, d) * inverse;
+    real3 across = l - middle * d;
+    real rest = radius * radius - dot(across, across);
+    real chord = sqrt(max(rest, 0.0) * inverse);
+    return rest >= 0.0 ? real2(middle - chord, middle + chord) : real2(INFINITY);
 }
 
 // The start of a ray that leaves p along the side of n (unit): a fixed share of the scene's size, which is 1 to 2 in device units.
-vec3 leave_fast(vec3 p, vec3 n) { return p + n * 1e-4; }
+real3 leave_fast(real3 p, real3 n) { return p + n * 1e-4; }
 
-vec3 normalize_fast(vec3 v) { return v * inversesqrt(dot(v, v)); }
+real3 normalize_fast(real3 v) { return v * inversesqrt(dot(v, v)); }
 
 #endif

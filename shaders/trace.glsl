@@ -1,11 +1,12 @@
-// Shoots a batch of rays: each invocation one. Included by trace.comp and, with FP64 defined, by trace_fp64.comp, which also brings the exact tier's t, u and v
-// to within 1 ulp; without it the host does that.
+// Shoots a batch of rays: each invocation one. Included by trace.comp; with REFINE defined by trace_refine.comp, which also brings the exact tier's t, u and v
+// to within 1 ulp (without it the host does that); with FP64 by trace_fp64.comp; with
+// both and LISTED by trace_again.comp, the exact tier's second stage.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 #include "shared.h"
 #include "constants.glsl"
 #include "ray.glsl"
-#ifdef FP64
+#ifdef REFINE
 #include "refine_fp64.glsl"
 #endif
 #include "traverse.glsl"
@@ -14,13 +15,21 @@ layout(local_size_x = GROUP_SIZE) in;
 layout(push_constant) uniform push { trace_args args; };
 layout(set = 0, binding = BINDING_RAYS) uniform usamplerBuffer ray_words;
 layout(set = 0, binding = BINDING_HITS) writeonly buffer hit_buffer { uint hit_words[]; };
+layout(set = 0, binding = BINDING_LIST) buffer list_buffer { uint undecided_rays[]; };
 layout(set = 0, binding = BINDING_STATUS) buffer status_buffer { status dispatch_status; };
+
+// Flags of a ray that this stage decides.
+#ifdef LISTED
+const uint EARLIER = HIT_UNDECIDED;
+#else
+const uint EARLIER = 0u;
+#endif
 
 void store_hit(uint number, float t, hit h, uint flags) {
     uint at = 6u * number;
     hit_words[at] = floatBitsToUint(t);
-    hit_words[at + 1u] = floatBitsToUint(h.u);
-    hit_words[at + 2u] = floatBitsToUint(h.v);
+    hit_words[at + 1u] = floatBitsToUint(float(h.u));
+    hit_words[at + 2u] = floatBitsToUint(float(h.v));
     hit_words[at + 3u] = uint(h.object);
     hit_words[at + 4u] = uint(h.index);
     hit_words[at + 5u] = flags;
@@ -32,30 +41,48 @@ bool is_valid(vec3 o, vec3 d, float tmin, float tmax) {
 
 // Brings the hit's numbers to within 1 ulp; false if that takes more than fp64.
 bool refine(ray r, inout hit h) {
-#ifdef FP64
-    vec3 tuv = vec3(h.t, h.u, h.v);
+#ifdef REFINE
+    dvec3 tuv, o = dvec3(r.o), d = dvec3(r.d);
     bool on_sphere = HAS_SPHERES && (!HAS_TRIANGLES || (h.primitive & SELF_SPHERE) != 0u), fine;
     if (on_sphere) {
-        uvec4 w0 = sphere_word(SPHERE_WORDS * (h.primitive & ~SELF_SPHERE));
-        vec3 center = uintBitsToFloat(w0.xyz);
-        fine = refine_sphere(r.o, r.d, center, uintBitsToFloat(w0.w), h.t * dot(r.d, r.d) > dot(center - r.o, r.d), tuv);
+        vec4 sphere = uintBitsToFloat(sphere_word(SPHERE_WORDS * (h.primitive & ~SELF_SPHERE)));
+        fine = refine_sphere(o, d, sphere.xyz, sphere.w, h.t * dot(r.d, r.d) > dot(real3(sphere.xyz) - r.o, r.d), tuv);
     } else {
         uint at = TRIANGLE_WORDS * h.primitive;
         vec3 v0 = uintBitsToFloat(triangle_word(at).xyz), v1 = uintBitsToFloat(triangle_word(at + 1u).xyz);
-        fine = refine_triangle(r.o, r.d, v0, v1, uintBitsToFloat(triangle_word(at + 2u).xyz), tuv);
+        fine = refine_triangle(o, d, v0, v1, uintBitsToFloat(triangle_word(at + 2u).xyz), tuv);
     }
-    h.t = tuv.x;
-    h.u = tuv.y;
-    h.v = tuv.z;
+    h.t = real(tuv.x);
+    h.u = real(tuv.y);
+    h.v = real(tuv.z);
     return fine;
 #else
     return false;
 #endif
 }
 
+// The number of this invocation's ray; false if there is none. LISTED: of those that an earlier dispatch left undecided.
+bool find_ray(out uint number) {
+    uint i = gl_GlobalInvocationID.x;
+#ifdef LISTED
+    number = i < args.count ? undecided_rays[args.first + i] : 0u;
+#else
+    number = args.first + i;
+#endif
+    return i < args.count;
+}
+
+// Counts an undecided ray and writes its number down for the next stage.
+void list_undecided(uint number) {
+    uint place = atomicAdd(dispatch_status.undecided, 1u);
+#ifndef LISTED
+    if (TIER == TIER_EXACT) undecided_rays[args.list_first + place] = number;
+#endif
+}
+
 void main() {
-    uint number = args.first + gl_GlobalInvocationID.x;
-    if (gl_GlobalInvocationID.x >= args.count) return;
+    uint number;
+    if (!find_ray(number)) return;
     uvec4 w0 = texelFetch(ray_words, int(2u * number));
     uvec4 w1 = texelFetch(ray_words, int(2u * number + 1u));
     vec3 o = uintBitsToFloat(w0.xyz), d = uintBitsToFloat(w1.xyz);
@@ -64,7 +91,7 @@ void main() {
     bool empty = !(tmin < tmax);
 
     int steps = int(MAX_STEPS);
-    ray r = ray_make(o * args.scale, valid ? d : vec3(1.0), tmin * args.scale, tmax * args.scale, SELF_NONE);
+    ray r = ray_make(real3(o) * args.scale, real3(valid ? d : vec3(1.0)), real(tmin) * args.scale, real(tmax) * args.scale, SELF_NONE);
     search q = traverse(r, ANY_HIT, valid && !empty ? args.root : REF_NONE, steps);
     // An origin that lost bits on its way to device units is not the ray that was given.
     bool lossy = TIER == TIER_EXACT && valid && !empty && (o * args.scale) / args.scale != o;
@@ -72,10 +99,10 @@ void main() {
     hit h = q.best;
     if (TIER == TIER_EXACT && !ANY_HIT && !undecided && h.object >= 0) undecided = !refine(r, h);
     if (undecided) h = hit_none();
-    float t = h.object < 0 ? INFINITY : h.t * r.t_scale / args.scale;
+    float t = float(h.object < 0 ? INFINITY : h.t * r.t_scale / args.scale);
     if (ANY_HIT && h.object >= 0) h.object = 0;
-    store_hit(number, t, h, (valid ? 0u : HIT_INVALID) | (undecided ? HIT_UNDECIDED : 0u));
-    if (undecided) atomicAdd(dispatch_status.undecided, 1u);
+    store_hit(number, t, h, (valid ? 0u : HIT_INVALID) | (undecided ? HIT_UNDECIDED | HIT_OPEN : EARLIER));
+    if (undecided) list_undecided(number);
     if (h.object >= 0) atomicAdd(dispatch_status.hits, 1u);
     if (steps <= 0) atomicAdd(dispatch_status.stuck, 1u);
 }

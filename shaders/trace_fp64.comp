@@ -1,4 +1,4 @@
-// Shoots a batch of rays on a device with doubles.
+// Shoots a batch of rays in fp64.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define FP64

@@ -17,7 +17,7 @@
 // not certain may begin. A maybe never shortens the ray.
 struct search {
     hit best;
-    float lo, hi, maybe;
+    real lo, hi, maybe;
 };
 
 search search_nothing() { return search(hit_none(), INFINITY, INFINITY, INFINITY); }
@@ -40,7 +40,7 @@ void consider(inout search q, ray r, hit c) {
 
 // A crossing in the exact tier. The bounds of the ray are sharp, save that a product with a power of two may have lost a denormal's bits.
 void consider_verdict(inout search q, ray r, verdict c, hit candidate) {
-    const float lost = 7.7e-34; // 2^-110
+    const real lost = 7.7e-34; // 2^-110
     bool possible = c.hi > r.tmin - lost && c.lo < r.tmax + lost && c.lo <= q.hi && c.lo <= c.hi;
     bool inside = c.certain && c.lo > r.tmin + lost && c.hi < r.tmax - lost;
     if (possible && inside && c.hi < q.lo) {
@@ -56,24 +56,24 @@ void test_triangle(uint number, ray r, shear s, inout search q) {
     uvec4 w0 = triangle_word(TRIANGLE_WORDS * number);
     uvec4 w1 = triangle_word(TRIANGLE_WORDS * number + 1u);
     uvec4 w2 = triangle_word(TRIANGLE_WORDS * number + 2u);
-    vec3 v0 = uintBitsToFloat(w0.xyz), v1 = uintBitsToFloat(w1.xyz), v2 = uintBitsToFloat(w2.xyz);
+    real3 v0 = real3(uintBitsToFloat(w0.xyz)), v1 = real3(uintBitsToFloat(w1.xyz)), v2 = real3(uintBitsToFloat(w2.xyz));
     if (number == r.self) return;
     if (TIER == TIER_EXACT) {
         verdict c = triangle_exact(r.o, s, v0, v1, v2);
         consider_verdict(q, r, c, hit(c.tuv.x, c.tuv.y, c.tuv.z, number, int(w0.w), int(w1.w)));
     } else {
-        vec3 tuv = TIER == TIER_FAST ? triangle_fast(r.o, r.d, v0, v1, v2) : triangle_robust(r.o, s, v0, v1, v2);
+        real3 tuv = TIER == TIER_FAST ? triangle_fast(r.o, r.d, v0, v1, v2) : triangle_robust(r.o, s, v0, v1, v2);
         consider(q, r, hit(tuv.x, tuv.y, tuv.z, number, int(w0.w), int(w1.w)));
     }
 }
 
 // A ray that starts on the sphere leaves its root at t = 0 out: the other one is 2 (l·d)/(d·d).
-vec2 sphere_from_itself(ray r, vec3 center) {
-    vec3 l = center - r.o;
-    return vec2(-INFINITY, 2.0 * dot(l, r.d) / dot(r.d, r.d));
+real2 sphere_from_itself(ray r, real3 center) {
+    real3 l = center - r.o;
+    return real2(-INFINITY, 2.0 * dot(l, r.d) / dot(r.d, r.d));
 }
 
-void test_sphere_exact(uint number, ray r, vec3 center, float radius, int object, inout search q) {
+void test_sphere_exact(uint number, ray r, real3 center, real radius, int object, inout search q) {
     bool again = r.self == (number | SELF_SPHERE);
     verdict c;
     if (!again) {
@@ -88,15 +88,15 @@ void test_sphere_exact(uint number, ray r, vec3 center, float radius, int object
 void test_sphere(uint number, ray r, inout search q) {
     uvec4 w0 = sphere_word(SPHERE_WORDS * number);
     uvec4 w1 = sphere_word(SPHERE_WORDS * number + 1u);
-    vec3 center = uintBitsToFloat(w0.xyz);
-    float radius = uintBitsToFloat(w0.w);
+    real3 center = real3(uintBitsToFloat(w0.xyz));
+    real radius = real(uintBitsToFloat(w0.w));
     if (TIER == TIER_EXACT) {
         test_sphere_exact(number, r, center, radius, int(w1.x), q);
         return;
     }
-    vec2 roots = TIER == TIER_FAST ? sphere_fast(r.o, r.d, center, radius) : sphere_robust(r.o, r.d, center, radius);
+    real2 roots = TIER == TIER_FAST ? sphere_fast(r.o, r.d, center, radius) : sphere_robust(r.o, r.d, center, radius);
     if (r.self == (number | SELF_SPHERE)) roots = sphere_from_itself(r, center);
-    float t = roots.x > r.tmin ? roots.x : roots.y;
+    real t = roots.x > r.tmin ? roots.x : roots.y;
     consider(q, r, hit(t, 0.0, 0.0, number | SELF_SPHERE, int(w1.x), 0));
 }
 
@@ -119,9 +119,9 @@ search traverse(ray r, bool any, uint root, inout int steps) {
             uvec4 w1 = node_word(NODE_WORDS * ref + 1u);
             uvec4 w2 = node_word(NODE_WORDS * ref + 2u);
             uvec4 w3 = node_word(NODE_WORDS * ref + 3u);
-            float limit = min(r.tmax, q.hi);
-            float left = box_enter(uintBitsToFloat(w0.xyz), uintBitsToFloat(w1.xyz), slab, r.tmin, limit);
-            float right = box_enter(uintBitsToFloat(w2.xyz), uintBitsToFloat(w3.xyz), slab, r.tmin, limit);
+            real limit = min(r.tmax, q.hi);
+            real left = box_enter(real3(uintBitsToFloat(w0.xyz)), real3(uintBitsToFloat(w1.xyz)), slab, r.tmin, limit);
+            real right = box_enter(real3(uintBitsToFloat(w2.xyz)), real3(uintBitsToFloat(w3.xyz)), slab, r.tmin, limit);
             bool swap = right < left;
             uint near_ref = swap ? w1.w : w0.w, far_ref = swap ? w0.w : w1.w;
             bool enter_near = min(left, right) < INFINITY, enter_far = max(left, right) < INFINITY;

@@ -1,8 +1,12 @@
 #include "render/kernels.h"
 
+#include "kernels/pending_again.h"
 #include "kernels/render.h"
+#include "kernels/render_fp64.h"
 #include "kernels/trace.h"
+#include "kernels/trace_again.h"
 #include "kernels/trace_fp64.h"
+#include "kernels/trace_refine.h"
 #include "shaders/shared.h"
 
 struct embedded { const char *name; const uint32_t *spirv; size_t size; };
@@ -10,8 +14,18 @@ struct embedded { const char *name; const uint32_t *spirv; size_t size; };
 static const struct embedded KERNELS[] = {
     [KERNEL_RENDER] = {"render", kernel_render, sizeof kernel_render},
     [KERNEL_TRACE] = {"trace", kernel_trace, sizeof kernel_trace},
+    [KERNEL_RENDER_FP64] = {"render_fp64", kernel_render_fp64, sizeof kernel_render_fp64},
     [KERNEL_TRACE_FP64] = {"trace_fp64", kernel_trace_fp64, sizeof kernel_trace_fp64},
+    [KERNEL_TRACE_REFINE] = {"trace_refine", kernel_trace_refine, sizeof kernel_trace_refine},
+    [KERNEL_TRACE_AGAIN] = {"trace_again", kernel_trace_again, sizeof kernel_trace_again},
+    [KERNEL_PENDING_AGAIN] = {"pending_again", kernel_pending_again, sizeof kernel_pending_again},
 };
+
+bool tier_available(struct context *ctx, const struct device *device, uint32_t tier) {
+    if (tier != TIER_FP64 || device->has_fp64) return true;
+    return fail(ctx, GN_NO_DEVICE, "accuracy 'fp64' needs a device with doubles (shaderFloat64), and %s has none; 'exact' needs none",
+                device->info.name);
+}
 
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,
                         const struct kernel_specialization *specialization, const struct kernel_binding *bindings, size_t binding_count,

@@ -4,8 +4,16 @@
 
 #include "device/kernel.h"
 
-// KERNEL_TRACE_FP64 needs a device with doubles.
-enum kernel_name { KERNEL_RENDER, KERNEL_TRACE, KERNEL_TRACE_FP64 };
+enum kernel_name {
+    KERNEL_RENDER,
+    KERNEL_TRACE,
+    // These need a device with doubles.
+    KERNEL_RENDER_FP64,
+    KERNEL_TRACE_FP64,
+    KERNEL_TRACE_REFINE,    // fp32, with the exact tier's hits brought to 1 ulp in fp64
+    KERNEL_TRACE_AGAIN,     // the exact tier's second stage
+    KERNEL_PENDING_AGAIN,   // the same for pending samples of a picture
+};
 
 struct kernel_specialization {
     uint32_t tier;          // TIER_*
@@ -14,6 +22,9 @@ struct kernel_specialization {
     bool any_hit;           // trace kernel: occlusion only
     bool resolve;           // render kernel: over the pending samples of the exact tier
 };
+
+// Whether the device has what a tier needs; else GN_NO_DEVICE, with what is missing.
+bool tier_available(struct context *ctx, const struct device *device, uint32_t tier);
 
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,
                         const struct kernel_specialization *specialization, const struct kernel_binding *bindings, size_t binding_count,

@@ -21,6 +21,7 @@ bool pending_init(struct pending *out, struct context *ctx, struct device *devic
 
 void pending_finish(struct pending *pending, struct device *device) {
     kernel_finish(&pending->kernel, device);
+    kernel_finish(&pending->again, device);
     buffer_finish(&pending->buffer, device);
     free(pending->slot_of);
     free(pending->primitive_at[0]);
@@ -61,6 +62,11 @@ static bool make_ready(struct pending *p, const struct pending_work *work) {
     if (!p->slot_of && !make_maps(p, work->ctx, work->scene, work->bvh)) return false;
     struct kernel_specialization constants = *work->specialization;
     constants.resolve = true;
+    if (work->device->has_fp64 && !p->again.pipeline) {
+        if (!render_kernel_init(&p->again, work->ctx, work->device, KERNEL_PENDING_AGAIN, &constants, work->bindings, work->binding_count,
+                                sizeof(struct trace_args)))
+            return false;
+    }
     return render_kernel_init(&p->kernel, work->ctx, work->device, KERNEL_RENDER, &constants, work->bindings, work->binding_count,
                               sizeof(struct render_args));
 }
@@ -96,11 +102,12 @@ static void store_answer(const struct pending *p, struct word4 *r, const struct 
     bool closest = r[3].w[1] == 0 && hit->object >= 0;
     uint32_t primitive = closest ? p->slot_of[answer->number] | (answer->number >= triangles ? SELF_SPHERE : 0) : SELF_NONE;
     r[at] = (struct word4){{r[3].w[0], (uint32_t)hit->object, (uint32_t)hit->primitive, primitive}};
+    r[0].w[3] = PENDING_ANSWERED;
     r[at + 1] = (struct word4){{bits_of(hit->t * scale), bits_of(hit->u), bits_of(hit->v), 0}};
 }
 
-// Decides the ray of every record that asks; *asking is how many did.
-static bool answer_all(struct pending *p, const struct pending_work *work, uint32_t records, uint32_t *asking) {
+// Decides the ray of every record that still asks.
+static bool answer_all(struct pending *p, const struct pending_work *work, uint32_t records) {
     static const char *what = "undecided rays";
     struct resolve_ray *rays = array_alloc(work->ctx, records, sizeof *rays, what);
     struct resolve_answer *answers = array_alloc(work->ctx, records, sizeof *answers, what);
@@ -119,23 +126,43 @@ static bool answer_all(struct pending *p, const struct pending_work *work, uint3
         if (record(p, i)[0].w[3] == PENDING_ASKS) store_answer(p, record(p, i), &answers[k++], work->ds->scale, world.triangle_count);
     free(rays);
     free(answers);
-    *asking = count;
     return ok;
 }
 
+static uint32_t records_in(const struct pending *p, uint32_t records, uint32_t state) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < records; i++) count += record(p, i)[0].w[3] == state;
+    return count;
+}
+
+// The second stage on the device: answers what fp64 decides.
+static bool run_again(struct pending *p, const struct pending_work *work, uint32_t groups, struct status *sums) {
+    if (!p->again.pipeline) return true;
+    struct trace_args args = {.root = work->ds->root};
+    *work->status = (struct status){0};
+    if (!kernel_run(&p->again, work->ctx, work->device, &args, groups, NULL)) return false;
+    sums->decided += work->status->decided;
+    return true;
+}
+
+// The samples that have their answers, once more.
+static bool run_samples(struct pending *p, const struct pending_work *work, uint32_t groups, struct status *sums) {
+    *work->status = (struct status){0};
+    if (!kernel_run(&p->kernel, work->ctx, work->device, work->args, groups, NULL)) return false;
+    sums->rays += work->status->rays;
+    sums->nonfinite += work->status->nonfinite;
+    sums->undecided += work->status->undecided;
+    sums->stuck += work->status->stuck;
+    return true;
+}
+
 bool pending_resolve(struct pending *pending, const struct pending_work *work, struct status *sums) {
-    uint32_t records = record_count(pending), asking = records;
+    uint32_t records = record_count(pending), groups = (records + GROUP_SIZE - 1) / GROUP_SIZE;
     if (records == 0) return true;
     if (!make_ready(pending, work)) return false;
-    while (asking > 0) {
-        if (!answer_all(pending, work, records, &asking)) return false;
-        if (asking == 0) break;
-        *work->status = (struct status){0};
-        if (!kernel_run(&pending->kernel, work->ctx, work->device, work->args, (records + GROUP_SIZE - 1) / GROUP_SIZE, NULL)) return false;
-        sums->rays += work->status->rays;
-        sums->nonfinite += work->status->nonfinite;
-        sums->undecided += work->status->undecided;
-        sums->stuck += work->status->stuck;
+    while (records_in(pending, records, PENDING_ASKS) > 0) {
+        if (!run_again(pending, work, groups, sums) || !answer_all(pending, work, records)) return false;
+        if (!run_samples(pending, work, groups, sums)) return false;
     }
     return true;
 }

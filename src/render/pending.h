@@ -9,6 +9,7 @@
 struct pending {
     struct buffer buffer;           // BINDING_PENDING; tiny where the tier is not exact
     struct kernel kernel;           // the render kernel over the records; made when the first question comes
+    struct kernel again;            // the second stage, on devices with doubles; made with it
     uint32_t *slot_of;              // by primitive of the BVH: its number in leaf order, of its kind
     uint32_t *primitive_at[2];      // by number in leaf order, triangles and spheres: the primitive of the BVH
 };

@@ -64,7 +64,8 @@ static bool make_kernel(struct pass *p) {
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) p->bindings[p->binding_count++] = others[i];
     p->specialization = (struct kernel_specialization){.tier = p->params->tier, .effects = p->params->effects, .aovs = p->params->aovs};
-    return render_kernel_init(&p->kernel, p->ctx, p->device, KERNEL_RENDER, &p->specialization, p->bindings, p->binding_count,
+    enum kernel_name name = p->params->tier == TIER_FP64 ? KERNEL_RENDER_FP64 : KERNEL_RENDER;
+    return render_kernel_init(&p->kernel, p->ctx, p->device, name, &p->specialization, p->bindings, p->binding_count,
                               sizeof(struct render_args));
 }
 
@@ -115,6 +116,7 @@ static bool count_status(struct pass *p, const struct status *status) {
     p->out->rays += status->rays;
     p->out->nonfinite_pixels += status->nonfinite;
     p->out->undecided_rays += status->undecided;
+    p->out->second_stage_rays += status->decided;
     if (status->stuck == 0) return true;
     return fail(p->ctx, GN_LIMIT,
                 "%u pixels need more than %u traversal steps for one sample, the most that this device's driver allows; "
@@ -296,7 +298,7 @@ bool render_picture(struct render_film *out, struct context *ctx, struct device 
     *out = (struct render_film){0};
     uint32_t tile_groups = params->tile_pixels ? (params->tile_pixels + GROUP_SIZE - 1) / GROUP_SIZE : 0;
     struct pass p = {.ctx = ctx, .device = device, .params = params, .out = out, .pieces = pieces_make(tile_groups)};
-    bool ok = make_images(out, ctx, params) && run_pass(&p, scene, bvh);
+    bool ok = tier_available(ctx, device, params->tier) && make_images(out, ctx, params) && run_pass(&p, scene, bvh);
     pass_finish(&p);
     if (!ok) render_film_finish(out);
     return ok;

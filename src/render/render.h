@@ -20,6 +20,7 @@ struct render_params {
 struct render_film {
     struct image color, depth, normal, id;
     uint64_t rays, nonfinite_pixels, undecided_rays;
+    uint64_t second_stage_rays;     // undecided rays that fp64 decided on the device; the rest took integers on the host
     double pipeline_ms, upload_ms, trace_ms;
 };
 
@@ -36,6 +37,7 @@ struct render_trace_params {
 
 struct render_trace_stats {
     uint64_t hits, undecided_rays;
+    uint64_t second_stage_rays;                 // undecided rays that fp64 decided on the device; the rest took integers on the host
     double pipeline_ms, upload_ms, trace_ms;    // trace: median over the repeats
 };
 

@@ -17,8 +17,8 @@ struct batch {
     const struct render_trace_params *params;
     struct render_trace_stats *stats;
     struct device_scene ds;
-    struct buffer rays, hits, status;
-    struct kernel kernel;
+    struct buffer rays, hits, list, status;
+    struct kernel kernel, again;    // the second stage: exact tier, devices with doubles
     struct pieces pieces;
     double *times;                  // seconds spent shooting, by repeat
 };
@@ -27,27 +27,33 @@ static bool make_buffers(struct batch *b, size_t portion) {
     struct buffer_params rays = {.name = "rays", .kind = BUFFER_TEXELS, .size = portion * sizeof(struct gn_ray), .host_writes = true};
     struct buffer_params hits = {.name = "hits", .kind = BUFFER_STORAGE, .size = portion * sizeof(struct gn_hit), .host_reads = true};
     struct buffer_params status = {.name = "status", .kind = BUFFER_STORAGE, .size = sizeof(struct status), .host_writes = true, .host_reads = true};
-    return buffer_init(&b->rays, b->ctx, b->device, &rays) && buffer_init(&b->hits, b->ctx, b->device, &hits) &&
+    size_t listed = b->params->tier == TIER_EXACT ? portion : 1;
+    struct buffer_params list = {.name = "undecided rays", .kind = BUFFER_STORAGE, .size = listed * sizeof(uint32_t)};
+    return buffer_init(&b->list, b->ctx, b->device, &list) && buffer_init(&b->rays, b->ctx, b->device, &rays) && buffer_init(&b->hits, b->ctx, b->device, &hits) &&
            buffer_init(&b->status, b->ctx, b->device, &status);
 }
 
-static bool make_kernel(struct batch *b) {
+static enum kernel_name first_kernel(const struct batch *b) {
+    if (b->params->tier == TIER_FP64) return KERNEL_TRACE_FP64;
+    return b->params->tier == TIER_EXACT && b->device->has_fp64 ? KERNEL_TRACE_REFINE : KERNEL_TRACE;
+}
+
+static bool make_kernel(struct batch *b, struct kernel *out, enum kernel_name name) {
     struct kernel_binding bindings[BINDING_COUNT];
     size_t count = device_scene_bindings(&b->ds, bindings, false);
     bindings[count++] = (struct kernel_binding){BINDING_RAYS, &b->rays, NULL};
     bindings[count++] = (struct kernel_binding){BINDING_HITS, &b->hits, NULL};
+    bindings[count++] = (struct kernel_binding){BINDING_LIST, &b->list, NULL};
     bindings[count++] = (struct kernel_binding){BINDING_STATUS, &b->status, NULL};
     struct kernel_specialization constants = {.tier = b->params->tier, .effects = b->params->effects, .any_hit = b->params->any};
-    enum kernel_name name = b->params->tier == TIER_EXACT && b->device->has_fp64 ? KERNEL_TRACE_FP64 : KERNEL_TRACE;
-    return render_kernel_init(&b->kernel, b->ctx, b->device, name, &constants, bindings, count, sizeof(struct trace_args));
+    return render_kernel_init(out, b->ctx, b->device, name, &constants, bindings, count, sizeof(struct trace_args));
 }
 
-static bool dispatch(struct batch *b, struct trace_args *args, uint32_t groups, double *seconds) {
+static bool dispatch(struct batch *b, struct kernel *kernel, struct trace_args *args, uint32_t groups, double *seconds) {
     struct status *status = b->status.map;
     *status = (struct status){0};
-    if (!kernel_run(&b->kernel, b->ctx, b->device, args, groups, seconds)) return false;
+    if (!kernel_run(kernel, b->ctx, b->device, args, groups, seconds)) return false;
     b->stats->hits += status->hits;
-    b->stats->undecided_rays += status->undecided;
     if (status->stuck == 0) return true;
     return fail(b->ctx, GN_LIMIT,
                 "%u rays need more than %u traversal steps, the most that this device's driver allows; "
@@ -55,21 +61,40 @@ static bool dispatch(struct batch *b, struct trace_args *args, uint32_t groups, 
                 status->stuck, b->device->max_loop_steps);
 }
 
-// Shoots the `count` rays in the buffer once and adds the time to *spent. `done` of `total` rays lie behind.
-static bool shoot(struct batch *b, uint32_t count, double *spent, double done, double total) {
+// A kernel that the driver has compiled: software devices do so at the first dispatch, which is not to count as shooting.
+static bool make_warm(struct batch *b, struct kernel *out, enum kernel_name name) {
+    struct trace_args nothing = {.root = REF_NONE};
+    return make_kernel(b, out, name) && dispatch(b, out, &nothing, 1, NULL);
+}
+
+// Shoots `count` rays with a kernel once, in pieces, and adds the time to *spent; *open becomes how many it left undecided.
+static bool shoot(struct batch *b, struct kernel *kernel, uint32_t count, double *spent, uint32_t *open) {
     struct trace_args args = {.root = b->ds.root, .scale = b->ds.scale};
-    for (uint32_t first = 0; first < count;) {
+    for (uint32_t first = 0; first < count; first += args.count) {
         uint32_t groups = (count - first + GROUP_SIZE - 1) / GROUP_SIZE;
         if (groups > b->pieces.groups) groups = b->pieces.groups;
         args.first = first;
         args.count = count - first < groups * GROUP_SIZE ? count - first : groups * GROUP_SIZE;
         double seconds;
-        if (!dispatch(b, &args, groups, &seconds)) return false;
+        if (!dispatch(b, kernel, &args, groups, &seconds)) return false;
         pieces_learn(&b->pieces, groups, seconds);
         *spent += seconds;
-        first += args.count;
-        if (!progress(b->ctx, "trace", (done + first) / total, -1)) return false;
+        args.list_first += ((struct status *)b->status.map)->undecided;
+        if (!progress(b->ctx, "trace", -1, -1)) return false;
     }
+    *open = args.list_first;
+    return true;
+}
+
+// The rays in the buffer once, through both stages.
+static bool shoot_both(struct batch *b, uint32_t count, double *spent) {
+    uint32_t undecided, open;
+    if (!shoot(b, &b->kernel, count, spent, &undecided)) return false;
+    b->stats->undecided_rays += undecided;
+    if (undecided == 0 || !b->device->has_fp64) return true;
+    if (!b->again.pipeline && !make_warm(b, &b->again, KERNEL_TRACE_AGAIN)) return false;
+    if (!shoot(b, &b->again, undecided, spent, &open)) return false;
+    b->stats->second_stage_rays += undecided - open;
     return true;
 }
 
@@ -79,7 +104,9 @@ static bool shoot_portion(struct batch *b, const struct gn_ray *rays, struct gn_
     const struct render_trace_stats before = *b->stats;
     for (uint32_t i = 0; i < repeat; i++) {
         *b->stats = before; // every repeat finds the same hits; they count once
-        if (!shoot(b, (uint32_t)count, &b->times[i], (double)begin * repeat + (double)count * i, (double)total * repeat)) return false;
+        if (!shoot_both(b, (uint32_t)count, &b->times[i])) return false;
+        double done = (double)begin * repeat + (double)count * (i + 1);
+        if (!progress(b->ctx, "trace", done / ((double)total * repeat), -1)) return false;
     }
     return buffer_download(&b->hits, b->ctx, b->device, hits + begin, count * sizeof *hits);
 }
@@ -94,17 +121,17 @@ static double median(double *values, size_t count) {
     return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
-// Decides by exact arithmetic what the kernel left open; the time counts as shooting.
+// Decides by exact arithmetic what the kernels left open; the time counts as shooting.
 static bool resolve_undecided(struct batch *b, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays, struct gn_hit *hits,
                               size_t count) {
     size_t open = 0;
     double start = clock_seconds();
-    for (size_t i = 0; i < count; i++) open += hits[i].flags & HIT_UNDECIDED ? 1 : 0;
+    for (size_t i = 0; i < count; i++) open += hits[i].flags & HIT_OPEN ? 1 : 0;
     struct resolve_ray *questions = array_alloc(b->ctx, open, sizeof *questions, "undecided rays");
     struct resolve_answer *answers = array_alloc(b->ctx, open, sizeof *answers, "undecided rays");
     bool ok = questions && answers;
     for (size_t i = 0, k = 0; ok && i < count; i++) {
-        if (!(hits[i].flags & HIT_UNDECIDED)) continue;
+        if (!(hits[i].flags & HIT_OPEN)) continue;
         struct resolve_ray *q = &questions[k++];
         *q = (struct resolve_ray){.tmin = rays[i].tmin, .tmax = rays[i].tmax, .self = RESOLVE_NO_SELF, .any = b->params->any};
         memcpy(q->o, rays[i].origin, sizeof q->o);
@@ -113,14 +140,14 @@ static bool resolve_undecided(struct batch *b, const struct scene *scene, const 
     struct ref_world world = ref_world_make(scene, bvh, b->params->effects);
     ok = ok && resolve_rays(answers, b->ctx, &world, questions, open);
     for (size_t i = 0, k = 0; ok && i < count; i++) {
-        if (!(hits[i].flags & HIT_UNDECIDED)) continue;
+        if (!(hits[i].flags & HIT_OPEN)) continue;
         hits[i] = answers[k++].hit;
         hits[i].flags |= HIT_UNDECIDED;
         b->stats->hits += hits[i].object >= 0;
     }
     free(questions);
     free(answers);
-    for (uint32_t i = 0; i < b->params->repeat; i++) b->times[i] += clock_seconds() - start;
+    for (uint32_t i = 0; i == 0 || i < b->params->repeat; i++) b->times[i] += clock_seconds() - start;
     return ok;
 }
 
@@ -130,8 +157,7 @@ static bool run_batch(struct batch *b, const struct scene *scene, const struct b
     if (!device_scene_init(&b->ds, b->ctx, b->device, scene, bvh, b->params->effects, false) || !make_buffers(b, portion)) return false;
     b->stats->upload_ms = clock_ms_since(start);
     start = clock_seconds();
-    struct trace_args nothing = {.root = REF_NONE};
-    if (!make_kernel(b) || !dispatch(b, &nothing, 1, NULL)) return false;
+    if (!make_warm(b, &b->kernel, first_kernel(b))) return false;
     b->stats->pipeline_ms = clock_ms_since(start);
     for (size_t begin = 0; begin < count; begin += portion) {
         size_t size = count - begin < portion ? count - begin : portion;
@@ -144,6 +170,8 @@ static bool run_batch(struct batch *b, const struct scene *scene, const struct b
 
 static void batch_finish(struct batch *b) {
     kernel_finish(&b->kernel, b->device);
+    kernel_finish(&b->again, b->device);
+    buffer_finish(&b->list, b->device);
     buffer_finish(&b->rays, b->device);
     buffer_finish(&b->hits, b->device);
     buffer_finish(&b->status, b->device);
@@ -156,7 +184,7 @@ bool render_trace(struct gn_hit *hits, struct render_trace_stats *stats, struct 
     *stats = (struct render_trace_stats){0};
     struct batch b = {.ctx = ctx, .device = device, .params = params, .stats = stats, .pieces = pieces_make(0)};
     b.times = array_alloc(ctx, params->repeat ? params->repeat : 1, sizeof *b.times, "times");
-    bool ok = b.times && run_batch(&b, scene, bvh, rays, hits, count);
+    bool ok = tier_available(ctx, device, params->tier) && b.times && run_batch(&b, scene, bvh, rays, hits, count);
     batch_finish(&b);
     return ok;
 }

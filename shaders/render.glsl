@@ -1,0 +1,163 @@
+// Renders: each workgroup a tile of 8 × 8 pixels, each invocation a pixel, from the samples it has to args.sample_end. Included by render.comp and, with FP64
+// defined, by render_fp64.comp.
+//
+// One loop shoots every kind of ray, so that the traversal stands in the kernel once: first the camera ray, then for each light that adds anything a
+// shadow ray. Everything is inlined by the drivers; a second call site would double the kernel and its compile time.
+#ifndef RENDER_GLSL
+#define RENDER_GLSL
+#include "shared.h"
+#include "camera.glsl"
+#include "constants.glsl"
+#include "film.glsl"
+#include "pending.glsl"
+#include "phong.glsl"
+#include "ray.glsl"
+#include "sampler.glsl"
+#include "surface.glsl"
+#include "traverse.glsl"
+
+layout(local_size_x = GROUP_SIZE) in;
+layout(push_constant) uniform push { render_args args; };
+layout(set = 0, binding = BINDING_LIGHTS) uniform usamplerBuffer light_words;
+layout(set = 0, binding = BINDING_GLOBALS) uniform usamplerBuffer global_words;
+layout(set = 0, binding = BINDING_STATUS) buffer status_buffer { status dispatch_status; };
+
+const bool HAS_LIGHT = HAS_DIFFUSE || HAS_SPECULAR;
+
+real3 background() { return real3(uintBitsToFloat(texelFetch(global_words, 0).xyz)); }
+real3 ambient() { return real3(uintBitsToFloat(texelFetch(global_words, 1).xyz)); }
+
+// The pixel of this invocation in the band's images; false beyond the film's edge.
+bool find_pixel(out ivec2 at) {
+    uint tile = ((args.first_tile + gl_WorkGroupID.x) * args.tile_stride) % args.tile_count;
+    uint tiles_across = (args.width + TILE_SIDE - 1u) / TILE_SIDE;
+    uvec2 origin = uvec2(tile % tiles_across, tile / tiles_across) * TILE_SIDE;
+    uvec2 within = uvec2(gl_LocalInvocationID.x % TILE_SIDE, gl_LocalInvocationID.x / TILE_SIDE);
+    at = ivec2(origin + within);
+    return at.x < int(args.width) && at.y < int(args.band_rows);
+}
+
+ray camera_ray(uvec2 pixel, uint number) {
+    vec2 offset = HAS_ANTIALIASING ? film_offset(args.seed, pixel, number, args.spp) : vec2(0.5);
+    vec3 direction = camera_direction(args.corner.xyz, args.du.xyz, args.dv.xyz, pixel, offset);
+    return ray_make(real3(args.position.xyz * args.position.w), real3(direction), 0.0, INFINITY, SELF_NONE);
+}
+
+// What light `number` would add at s, seen along -v, if nothing is in its way; and the way to it.
+real3 light_reflect(surface s, phong_material m, real3 v, uint number, out real3 position) {
+    uvec4 w0 = texelFetch(light_words, int(LIGHT_WORDS * number));
+    uvec4 w1 = texelFetch(light_words, int(LIGHT_WORDS * number + 1u));
+    position = real3(uintBitsToFloat(w0.xyz));
+    real3 way = position - s.p;
+    real3 l = normalize_robust(way);
+    real distance = dot(way, l) * args.corner.w;
+    real3 light = real3(uintBitsToFloat(w1.xyz)) * light_falloff(uintBitsToFloat(w0.w), distance);
+    return light * phong_reflect(m, s.n, l, v, HAS_DIFFUSE, HAS_SPECULAR);
+}
+
+// The sample of a camera ray that hits s, still black.
+film_sample black_sample(surface s, ray r, hit h) {
+    real depth = h.t * sqrt(dot(r.d, r.d)) * args.corner.w;
+    return film_sample(vec3(0.0), vec3(s.n), float(depth), h.object, h.index);
+}
+
+// How a sample ended.
+#define SAMPLE_DONE 0u
+#define SAMPLE_OUT_OF_STEPS 1u
+#define SAMPLE_UNDECIDED 2u
+
+// One sample: the camera ray, and the shadow rays of what it hits. Only with SAMPLE_DONE is the result to be used.
+film_sample shoot_sample(ray camera, inout int steps, inout uint rays, inout pending_sample pending, out uint end) {
+    film_sample result = film_sample(vec3(0.0), vec3(0.0), 0.0, -1, -1);
+    real3 radiance = background();
+    surface s;
+    phong_material m;
+    real3 v = real3(0.0), adds = real3(0.0);
+    uint light = 0u;            // the next one to look at
+    uint number = 0u;           // of the ray in the sample
+    bool more = true;
+    ray r = camera;
+    end = SAMPLE_DONE;
+    do {
+        bool first = number == 0u;
+        hit h;
+        if (!pending_answer(pending, number, h)) {
+            search q = traverse(r, !first, args.root, steps);
+            h = q.best;
+            if (search_undecided(q, !first)) {
+                pending_ask(pending, r, !first, number);
+                end = SAMPLE_UNDECIDED;
+                return result;
+            }
+        }
+        number++;
+        if (!first) {
+            if (h.object < 0) radiance += adds;
+        } else if (h.object >= 0) {
+            s = surface_at(r, h);
+            m = material_at(s.material);
+            v = -normalize_tier(r.d);
+            radiance = ambient() * m.ambient;
+            result = black_sample(s, r, h);
+        } else {
+            light = args.light_count;
+        }
+        more = false;
+        while (HAS_LIGHT && !more && light < args.light_count && steps > 0) {
+            steps--;
+            real3 position;
+            adds = light_reflect(s, m, v, light, position);
+            light++;
+            if (HAS_SHADOWS) {
+                real3 start = leave_surface(s);
+                more = adds != real3(0.0);
+                r = ray_make(start, position - start, 0.0, 1.0, TIER == TIER_FAST ? SELF_NONE : s.primitive);
+            } else {
+                radiance += adds;
+            }
+        }
+        if (HAS_LIGHT && !more && light < args.light_count) steps = 0;
+    } while (more && steps > 0);
+    rays += number;
+    result.radiance = vec3(radiance);
+    if (more || steps <= 0) end = SAMPLE_OUT_OF_STEPS;
+    return result;
+}
+
+// Brings a pixel on to args.sample_end, as far as steps and decisions go. With RESOLVE: one sample only.
+void expose(inout film_pixel pixel, uvec2 position, inout pending_sample pending, inout uint rays) {
+    int steps = int(MAX_STEPS);
+    uint end = SAMPLE_DONE;
+    uint sample_end = RESOLVE ? pixel.done + 1u : args.sample_end;
+    while (pixel.done < sample_end && end == SAMPLE_DONE) {
+        film_sample result = shoot_sample(camera_ray(position, pixel.done), steps, rays, pending, end);
+        steps--;
+        if (end == SAMPLE_DONE) film_add(pixel, result);
+    }
+}
+
+void report(film_pixel before, film_pixel after, uint rays, bool asks) {
+    atomicAdd(dispatch_status.rays, rays);
+    if (after.nonfinite != before.nonfinite) atomicAdd(dispatch_status.nonfinite, 1u);
+    if (asks) atomicAdd(dispatch_status.undecided, 1u);
+    uint pending = asks ? 1u : 0u; // a sample that the host brings to its end
+    if (after.done + pending < args.sample_end) {
+        atomicAdd(dispatch_status.unfinished, 1u);
+        if (after.done == before.done && !asks) atomicAdd(dispatch_status.stuck, 1u);
+    }
+}
+
+void main() {
+    pending_sample pending;
+    ivec2 at;
+    if (!(RESOLVE ? pending_find(pending, at) : find_pixel(at))) return;
+    if (!RESOLVE) pending = pending_none();
+    film_pixel before = film_load(at), pixel = before;
+    uint rays = 0u;
+    expose(pixel, uvec2(at) + uvec2(0u, args.band_y), pending, rays);
+    film_store(at, pixel);
+    if (TIER == TIER_EXACT) pending_store(pending, at);
+    report(before, pixel, rays, pending.asks);
+}
+
+#endif
