@@ -6,6 +6,9 @@
 
 #include "base/image_codec.h"
 
+// The initializers of OpenEXR 3.3 name the first fields only.
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+
 // A guess at what the strongest compression can do to a constant picture; what counts is that a small file claims no terabytes.
 #define MOST_PIXELS_PER_BYTE 65536.0
 
