@@ -284,10 +284,10 @@ bool image_decode_exr(struct image *out, struct context *ctx, const char *path, 
     struct exr_reader reader = {.memory = {.source = bytes->data, .size = bytes->size}};
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
     exr_result_t result = EXR_ERR_UNKNOWN;
-    if (!open_reader(&reader, ctx, path)) goto fail;
+    if (!open_reader(&reader, ctx, path)) goto finish;
     uint64_t width = (uint64_t)((int64_t)reader.window.max.x - reader.window.min.x + 1);
     uint64_t height = (uint64_t)((int64_t)reader.window.max.y - reader.window.min.y + 1);
-    if (!image_init_announced(out, ctx, path, width, height, bytes->size, MOST_PIXELS_PER_BYTE)) goto fail;
+    if (!image_init_announced(out, ctx, path, width, height, bytes->size, MOST_PIXELS_PER_BYTE)) goto finish;
     result = reader.tiled ? read_tiles(&reader, out, &decoder) : read_scan_lines(&reader, out, &decoder);
     if (result) {
         const char *why = reader.memory.message[0] ? reader.memory.message : exr_get_default_error_message(result);
@@ -295,8 +295,8 @@ bool image_decode_exr(struct image *out, struct context *ctx, const char *path, 
     } else if (strcmp(reader.sources[0], "Y") == 0) {
         spread_grey(out);
     }
-fail:
-    exr_decoding_destroy(reader.exr, &decoder);
+finish:
+    if (reader.exr) exr_decoding_destroy(reader.exr, &decoder);
     if (reader.exr) exr_finish(&reader.exr);
     if (result) image_finish(out);
     return result == EXR_ERR_SUCCESS;
