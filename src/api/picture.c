@@ -39,20 +39,21 @@ const float *gn_picture_pixels(const struct gn_picture *picture, uint32_t aov) {
 
 static size_t pixel_count(const struct image *image) { return (size_t)image->width * image->height; }
 
-// Depth in grey: the nearest finite one white, the farthest nearly black, what is not finite black.
+// Depth in grey: the nearest white, the farthest nearly black, between them by the reciprocal, so that a far background does not wash out what is near.
+// What is not hit is black.
 static bool view_of_depth(struct image *out, struct context *ctx, const struct image *depth) {
     if (!image_init(out, ctx, depth->width, depth->height, 1, "the picture of the depths")) return false;
     size_t count = pixel_count(depth);
-    float nearest = INFINITY, farthest = -INFINITY;
-    for (size_t i = 0; i < count; i++) {
-        if (!isfinite(depth->pixels[i])) continue;
-        nearest = fminf(nearest, depth->pixels[i]);
-        farthest = fmaxf(farthest, depth->pixels[i]);
-    }
-    double range = (double)farthest - (double)nearest;
+    double nearest = INFINITY, farthest = 0;
     for (size_t i = 0; i < count; i++) {
         double z = depth->pixels[i];
-        if (isfinite(z)) out->pixels[i] = range > 0 ? (float)(1 - 0.95 * (z - (double)nearest) / range) : 1;
+        if (!(z > 0 && isfinite(z))) continue;
+        nearest = fmin(nearest, z), farthest = fmax(farthest, z);
+    }
+    double range = 1 / nearest - 1 / farthest;
+    for (size_t i = 0; i < count; i++) {
+        double z = depth->pixels[i];
+        if (z > 0 && isfinite(z)) out->pixels[i] = range > 0 ? (float)(0.05 + 0.95 * (1 / z - 1 / farthest) / range) : 1;
     }
     return true;
 }
