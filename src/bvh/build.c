@@ -1,7 +1,8 @@
-// The builder as a whole: records of all boxes, the top of the tree with all threads, then one task for each subtree, then all in one array.
+// The builder as a whole: records of all boxes, the top of the tree with all threads, then one task for each subtree, then all in one
+// array.
 //
-// Every step keeps the order of the primitives' numbers in a set, so that cuts in the middle and between the two kinds need no sorting, and the
-// same boxes give the same tree. In the result the top comes first, level by level, and then the subtrees, each in one piece.
+// Every step keeps the order of the primitives' numbers in a set, so that cuts in the middle and between the two kinds need no sorting, and
+// the same boxes give the same tree. In the result the top comes first, level by level, and then the subtrees, each in one piece.
 #include "bvh/bvh.h"
 
 #include <inttypes.h>
@@ -11,7 +12,7 @@
 #include "base/threads.h"
 #include "bvh/top.h"
 
-#define MOST_PRIMITIVES (UINT32_MAX / 2)    // a node's number is 32 bits, and there may be two nodes for each primitive
+#define MOST_PRIMITIVES (UINT32_MAX / 2) // a node's number is 32 bits, and there may be two nodes for each primitive
 
 struct build {
     struct context *ctx;
@@ -19,11 +20,11 @@ struct build {
     uint32_t count;
     struct bvh_watch watch;
     struct bvh_workspace workspace;
-    struct bvh_extent *extents;     // of the chunks of the boxes
+    struct bvh_extent *extents; // of the chunks of the boxes
     struct bvh_top top;
-    struct bvh_subtree *subtrees;   // of the top's small sets
-    uint32_t *bases;                // where the second node of each goes; its root goes into the top
-    struct bvh_node *nodes;         // the result
+    struct bvh_subtree *subtrees; // of the top's small sets
+    uint32_t *bases;              // where the second node of each goes; its root goes into the top
+    struct bvh_node *nodes;       // the result
 };
 
 static bool fill_records(void *data, size_t begin, size_t end, unsigned thread) {
@@ -64,7 +65,7 @@ static bool build_subtrees(void *data, size_t begin, size_t end, unsigned thread
     for (size_t i = begin; i < end; i++) {
         const struct bvh_range *range = &build->top.small[i].range;
         if (!bvh_subtree_build(&build->subtrees[i], &build->workspace, range)) return false;
-        atomic_fetch_add(&build->watch.done, bvh_work(range->end - range->begin));
+        atomic_fetch_add(&build->watch.done, bvh_work(bvh_range_size(range)));
     }
     return bvh_watch_go_on(&build->watch, thread);
 }
@@ -133,7 +134,8 @@ static void build_finish(struct build *build) {
 
 bool bvh_build(struct bvh *out, struct context *ctx, const struct bvh_box *boxes, uint32_t count, const struct bvh_params *params) {
     *out = (struct bvh){0};
-    if (count > MOST_PRIMITIVES) return fail(ctx, GN_LIMIT, "%" PRIu32 " primitives are more than a BVH can hold (%" PRIu32 ")", count, MOST_PRIMITIVES);
+    if (count > MOST_PRIMITIVES)
+        return fail(ctx, GN_LIMIT, "%" PRIu32 " primitives are more than a BVH can hold (%" PRIu32 ")", count, MOST_PRIMITIVES);
     if (count == 0) return true;
     struct build build = {.ctx = ctx, .boxes = boxes, .count = count, .workspace.split_at = params->split_at};
     struct bvh_range root;

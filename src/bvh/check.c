@@ -12,8 +12,8 @@ struct check {
     const struct bvh *bvh;
     const struct bvh_box *boxes;
     const struct bvh_params *params;
-    unsigned char *node_seen;       // node_count
-    unsigned char *place_seen;      // places in `order`
+    unsigned char *node_seen;  // node_count
+    unsigned char *place_seen; // places in `order`
     unsigned char *primitive_seen;
     uint32_t leaf_primitives, depth;
     double cost;
@@ -90,11 +90,13 @@ static bool check_all(struct check *check) {
     if (!check_node(check, 0, 0)) return false;
     for (uint32_t i = 0; i < bvh->node_count; i++)
         if (!check->node_seen[i]) return wrong(check, "node %" PRIu32 " has no parent", i);
-    if (check->leaf_primitives != bvh->primitive_count) return wrong(check, "the leaves hold %" PRIu32 " primitives", check->leaf_primitives);
+    if (check->leaf_primitives != bvh->primitive_count)
+        return wrong(check, "the leaves hold %" PRIu32 " primitives", check->leaf_primitives);
     if (check->depth != bvh->depth) return wrong(check, "the depth is %" PRIu32, check->depth);
     double root_area = bvh_half_area(bvh->nodes[0].min, bvh->nodes[0].max);
     double cost = root_area > 0 ? check->cost / root_area : 0;
-    if (!(fabs(cost - bvh->sah_cost) <= 1e-9 * cost)) return wrong(check, "sah_cost is not the cost of these %" PRIu32 " nodes", bvh->node_count);
+    if (!(fabs(cost - bvh->sah_cost) <= 1e-9 * cost))
+        return wrong(check, "sah_cost is not the cost of these %" PRIu32 " nodes", bvh->node_count);
     return true;
 }
 

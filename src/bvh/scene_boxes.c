@@ -92,7 +92,7 @@ static bool piece_boxes(void *data, size_t begin, size_t end, unsigned thread) {
 
 bool bvh_build_scene(struct bvh *out, struct context *ctx, const struct scene *scene) {
     *out = (struct bvh){0};
-    if (scene->shape_count == 0) return true;   // first_triangle may be NULL then
+    if (scene->shape_count == 0) return true; // first_triangle may be NULL then
     uint32_t triangles = scene->first_triangle[scene->shape_count], spheres = scene->first_sphere[scene->shape_count];
     if (spheres > UINT32_MAX - triangles)
         return fail(ctx, GN_LIMIT, "%" PRIu32 " triangles and %" PRIu32 " spheres are more than a BVH can hold", triangles, spheres);

@@ -5,8 +5,8 @@
 #include "bvh/bvh.h"
 #include "scene/scene.h"
 
-// Builds the hierarchy of a scene: primitive i < scene_triangle_count is triangle i, the others are spheres, whose boxes are rounded outward
-// (right-answer.md's exact sphere lies inside).
+// Builds the hierarchy of a scene: primitive i < scene_triangle_count is triangle i, the others are spheres, whose boxes are rounded
+// outward (right-answer.md's exact sphere lies inside).
 bool bvh_build_scene(struct bvh *out, struct context *ctx, const struct scene *scene);
 
 #endif

@@ -2,12 +2,11 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
-#define EACH(value) {value, value, value, value}
+#define FOUR(value) value, value, value, value
 
-const struct bvh_extent bvh_extent_empty = {
-    .min = EACH(INFINITY), .max = EACH(-INFINITY), .low = EACH(INFINITY), .high = EACH(-INFINITY),
-};
+const struct bvh_extent bvh_extent_empty = {{FOUR(INFINITY)}, {FOUR(-INFINITY)}, {FOUR(INFINITY)}, {FOUR(-INFINITY)}};
 
 // Written so that they become one instruction each. NaN does not occur.
 static inline float least(float a, float b) { return a < b ? a : b; }
@@ -32,7 +31,8 @@ static inline void centroid_add(float low[restrict 4], float high[restrict 4], c
     }
 }
 
-static inline void box_add(float min[restrict 4], float max[restrict 4], const float other_min[restrict 4], const float other_max[restrict 4]) {
+static inline void box_add(float min[restrict 4], float max[restrict 4], const float other_min[restrict 4],
+                           const float other_max[restrict 4]) {
     for (int lane = 0; lane < 4; lane++) {
         min[lane] = least(other_min[lane], min[lane]);
         max[lane] = most(other_max[lane], max[lane]);
@@ -79,7 +79,7 @@ static inline int bin_of(const struct bvh_grid *grid, const struct bvh_record *r
 void bvh_bins_clear(struct bvh_bins *bins, int count) {
     for (int axis = 0; axis < 3; axis++) {
         for (int i = 0; i < count; i++) {
-            bins->bin[axis][i] = (struct bvh_bin){EACH(INFINITY), EACH(-INFINITY)};
+            bins->bin[axis][i] = (struct bvh_bin){{FOUR(INFINITY)}, {FOUR(-INFINITY)}};
             bins->count[axis][i] = 0;
         }
     }
@@ -145,8 +145,8 @@ bool bvh_split_find(struct bvh_split *split, const struct bvh_bins *bins, int co
     *split = (struct bvh_split){.axis = -1, .cost = INFINITY};
     for (int axis = 0; axis < 3; axis++) sweep(split, &uneven, bins, count, axis);
     if (split->axis < 0) return false;
-    split->sides[0] = bins_union(bins->bin[split->axis], 0, split->bin);
-    split->sides[1] = bins_union(bins->bin[split->axis], split->bin, count);
+    split->parts[0] = bins_union(bins->bin[split->axis], 0, split->bin);
+    split->parts[1] = bins_union(bins->bin[split->axis], split->bin, count);
     return true;
 }
 
@@ -159,6 +159,11 @@ uint32_t bvh_split_left_count(const struct bvh_split *split, const struct bvh_bi
 void bvh_split_move(const struct bvh_split *split, const struct bvh_grid *grid, const struct bvh_record *records, uint32_t count,
                     struct bvh_record *left, struct bvh_record *right, struct bvh_extent extents[2]) {
     struct bvh_record *to[2] = {left, right};
+    for (int side = 0; side < 2; side++) {
+        extents[side] = bvh_extent_empty;
+        memcpy(extents[side].min, split->parts[side].min, sizeof extents[side].min);
+        memcpy(extents[side].max, split->parts[side].max, sizeof extents[side].max);
+    }
     for (uint32_t i = 0; i < count; i++) {
         const struct bvh_record record = records[i];
         int side = bin_of(grid, &record, split->axis) >= split->bin;

@@ -17,14 +17,19 @@ bool bvh_depth_allows(uint32_t depth, uint32_t count) {
     return depth + 1 + levels + 1 <= BVH_MAX_DEPTH;
 }
 
-void bvh_range_cut(struct bvh_range parts[2], const struct bvh_workspace *workspace, const struct bvh_range *range, uint32_t cut) {
-    const struct bvh_record *records = workspace->records[range->source];
+struct bvh_range bvh_range_part(const struct bvh_range *range, int side, uint32_t middle, bool moved) {
+    return (struct bvh_range){.begin = side ? middle : range->begin,
+                              .end = side ? range->end : middle,
+                              .depth = range->depth + 1,
+                              .source = moved ? 1 - range->source : range->source,
+                              .extent = bvh_extent_empty};
+}
+
+// Leaves the records where they are.
+static void cut_range(struct bvh_range parts[2], const struct bvh_workspace *workspace, const struct bvh_range *range, uint32_t middle) {
     for (int side = 0; side < 2; side++) {
-        struct bvh_range *part = &parts[side];
-        *part = (struct bvh_range){.begin = side ? cut : range->begin, .end = side ? range->end : cut, .depth = range->depth + 1};
-        part->source = range->source;
-        part->extent = bvh_extent_empty;
-        bvh_extent_add(&part->extent, &records[part->begin], part->end - part->begin);
+        parts[side] = bvh_range_part(range, side, middle, false);
+        bvh_extent_add(&parts[side].extent, &workspace->records[range->source][parts[side].begin], bvh_range_size(&parts[side]));
     }
 }
 
@@ -33,13 +38,11 @@ static void split_range(struct bvh_range parts[2], const struct bvh_workspace *w
     const struct bvh_record *from = workspace->records[range->source];
     struct bvh_record *to = workspace->records[1 - range->source];
     uint32_t middle = range->begin + split->left_count;
-    struct bvh_extent extents[2] = {bvh_extent_empty, bvh_extent_empty};
-    bvh_split_move(split, grid, &from[range->begin], range->end - range->begin, &to[range->begin], &to[middle], extents);
+    struct bvh_extent extents[2];
+    bvh_split_move(split, grid, &from[range->begin], bvh_range_size(range), &to[range->begin], &to[middle], extents);
     for (int side = 0; side < 2; side++) {
-        memcpy(extents[side].min, split->sides[side].min, sizeof extents[side].min);
-        memcpy(extents[side].max, split->sides[side].max, sizeof extents[side].max);
-        parts[side] = (struct bvh_range){.begin = side ? middle : range->begin, .end = side ? range->end : middle,
-                                         .depth = range->depth + 1, .source = 1 - range->source, .extent = extents[side]};
+        parts[side] = bvh_range_part(range, side, middle, true);
+        parts[side].extent = extents[side];
     }
 }
 
@@ -57,7 +60,7 @@ static int bins_for(uint32_t count) { return count < 4 * (BVH_MAX_BINS - 4) ? 4 
 // Divides a range in two as the heuristic says, or as it must. False when it is to be a leaf.
 static bool divide(struct bvh_range parts[2], struct subtree_build *build, const struct bvh_range *range, double area) {
     const struct bvh_workspace *workspace = build->workspace;
-    uint32_t count = range->end - range->begin;
+    uint32_t count = bvh_range_size(range);
     if (count == 1) return false;
     struct bvh_grid grid = bvh_grid_make(&range->extent, bins_for(count));
     struct bvh_split split = {.axis = -1};
@@ -69,9 +72,9 @@ static bool divide(struct bvh_range parts[2], struct subtree_build *build, const
     if (count <= BVH_MAX_LEAF && (split.axis < 0 || area * count <= BVH_NODE_COST * area + split.cost)) {
         uint32_t boundary = kind_boundary(workspace, range);
         if (boundary == range->begin || boundary == range->end) return false;
-        bvh_range_cut(parts, workspace, range, boundary);
+        cut_range(parts, workspace, range, boundary);
     } else if (split.axis < 0) {
-        bvh_range_cut(parts, workspace, range, range->begin + count / 2);
+        cut_range(parts, workspace, range, range->begin + count / 2);
     } else {
         split_range(parts, workspace, range, &split, &grid);
     }
@@ -81,7 +84,7 @@ static bool divide(struct bvh_range parts[2], struct subtree_build *build, const
 static void leaf_make(struct subtree_build *build, struct bvh_node *node, const struct bvh_range *range, double area) {
     const struct bvh_workspace *workspace = build->workspace;
     node->first = range->begin;
-    node->count = range->end - range->begin;
+    node->count = bvh_range_size(range);
     for (uint32_t i = range->begin; i < range->end; i++) workspace->order[i] = bvh_record_number(&workspace->records[range->source][i]);
     build->out->cost += area * node->count;
     if (range->depth > build->out->depth) build->out->depth = range->depth;
@@ -106,7 +109,7 @@ static void node_build(struct subtree_build *build, uint32_t number, const struc
 
 bool bvh_subtree_build(struct bvh_subtree *out, const struct bvh_workspace *workspace, const struct bvh_range *range) {
     *out = (struct bvh_subtree){0};
-    size_t count = range->end - range->begin;
+    size_t count = bvh_range_size(range);
     out->nodes = malloc((2 * count - 1) * sizeof *out->nodes);
     if (!out->nodes) return false;
     struct subtree_build build = {.workspace = workspace, .out = out};

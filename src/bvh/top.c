@@ -11,15 +11,15 @@ struct large {
     uint32_t node;
     uint32_t first_chunk, chunk_count;
     struct bvh_grid grid;
-    struct bvh_split split;         // axis -1: to be cut in the middle instead
+    struct bvh_split split; // axis -1: to be cut in the middle instead
 };
 
 // A piece of a large set.
 struct chunk {
     uint32_t large, begin, end;
-    uint32_t left, right;           // where its records are moved to
+    uint32_t left, right; // where its records are moved to
     struct bvh_bins bins;
-    struct bvh_extent extents[2];   // of its records that go left and right
+    struct bvh_extent extents[2]; // of its records that go left and right
 };
 
 struct level {
@@ -31,8 +31,6 @@ struct level {
     struct chunk *chunks;
     uint32_t large_count, next_count, chunk_count;
 };
-
-static uint32_t range_size(const struct bvh_range *range) { return range->end - range->begin; }
 
 static void *array_grow(struct context *ctx, void *array, size_t count, size_t size) {
     void *grown = realloc(array, count * size);
@@ -55,7 +53,7 @@ static bool level_reserve(struct level *level, size_t added) {
 
 static bool level_cut_into_chunks(struct level *level) {
     size_t count = 0;
-    for (uint32_t i = 0; i < level->large_count; i++) count += (range_size(&level->large[i].range) - 1) / BVH_CHUNK_SIZE + 1;
+    for (uint32_t i = 0; i < level->large_count; i++) count += (bvh_range_size(&level->large[i].range) - 1) / BVH_CHUNK_SIZE + 1;
     level->chunks = array_alloc(level->ctx, count, sizeof *level->chunks, "BVH bins");
     if (!level->chunks) return false;
     level->chunk_count = 0;
@@ -90,7 +88,8 @@ static void large_plan(struct level *level, struct large *large) {
     bvh_bins_clear(&bins, large->grid.bins);
     for (uint32_t i = 0; i < large->chunk_count; i++) bvh_bins_merge(&bins, &chunks[i].bins, large->grid.bins);
     large->split.axis = -1;
-    if (!bvh_depth_allows(large->range.depth, range_size(&large->range)) || !bvh_split_find(&large->split, &bins, large->grid.bins)) return;
+    if (!bvh_depth_allows(large->range.depth, bvh_range_size(&large->range)) || !bvh_split_find(&large->split, &bins, large->grid.bins))
+        return;
     uint32_t left = large->range.begin, right = left + large->split.left_count;
     for (uint32_t i = 0; i < large->chunk_count; i++) {
         uint32_t left_count = bvh_split_left_count(&large->split, &chunks[i].bins);
@@ -102,13 +101,14 @@ static void large_plan(struct level *level, struct large *large) {
 }
 
 static uint32_t middle_of(const struct large *large) {
-    uint32_t size = range_size(&large->range);
+    uint32_t size = bvh_range_size(&large->range);
     return large->range.begin + (large->split.axis < 0 ? size / 2 : large->split.left_count);
 }
 
 // A cut leaves the records where they are: only the extents of what lies before and behind it are to be found.
 static void chunk_cut(struct chunk *chunk, const struct bvh_record *records, uint32_t middle) {
     uint32_t cut = middle < chunk->begin ? chunk->begin : middle > chunk->end ? chunk->end : middle;
+    chunk->extents[0] = chunk->extents[1] = bvh_extent_empty;
     bvh_extent_add(&chunk->extents[0], &records[chunk->begin], cut - chunk->begin);
     bvh_extent_add(&chunk->extents[1], &records[cut], chunk->end - cut);
 }
@@ -120,32 +120,24 @@ static bool move_chunks(void *data, size_t begin, size_t end, unsigned thread) {
         const struct large *large = &level->large[chunk->large];
         const struct bvh_record *from = level->workspace->records[large->range.source];
         struct bvh_record *to = level->workspace->records[1 - large->range.source];
-        chunk->extents[0] = chunk->extents[1] = bvh_extent_empty;
         if (large->split.axis < 0)
             chunk_cut(chunk, from, middle_of(large));
         else
-            bvh_split_move(&large->split, &large->grid, &from[chunk->begin], chunk->end - chunk->begin, &to[chunk->left],
-                           &to[chunk->right], chunk->extents);
+            bvh_split_move(&large->split, &large->grid, &from[chunk->begin], chunk->end - chunk->begin, &to[chunk->left], &to[chunk->right],
+                           chunk->extents);
     }
     return bvh_watch_go_on(level->watch, thread);
 }
 
 static struct bvh_range part_of(const struct level *level, const struct large *large, int side) {
-    bool moved = large->split.axis >= 0;
-    uint32_t middle = middle_of(large);
-    struct bvh_range part = {.begin = side ? middle : large->range.begin, .end = side ? large->range.end : middle,
-                             .depth = large->range.depth + 1, .source = moved ? 1 - large->range.source : large->range.source,
-                             .extent = bvh_extent_empty};
-    for (uint32_t i = 0; i < large->chunk_count; i++)
-        bvh_extent_merge(&part.extent, &level->chunks[large->first_chunk + i].extents[side]);
-    if (moved) memcpy(part.extent.min, large->split.sides[side].min, sizeof part.extent.min);
-    if (moved) memcpy(part.extent.max, large->split.sides[side].max, sizeof part.extent.max);
+    struct bvh_range part = bvh_range_part(&large->range, side, middle_of(large), large->split.axis >= 0);
+    for (uint32_t i = 0; i < large->chunk_count; i++) bvh_extent_merge(&part.extent, &level->chunks[large->first_chunk + i].extents[side]);
     return part;
 }
 
 // Puts a set where its size says. The node is complete but for a small set's, which the subtree fills.
 static void range_enter(struct level *level, const struct bvh_range *range, uint32_t node) {
-    if (range_size(range) > BVH_SUBTREE_SIZE)
+    if (bvh_range_size(range) > BVH_SUBTREE_SIZE)
         level->next[level->next_count++] = (struct large){.range = *range, .node = node};
     else
         level->out->small[level->out->small_count++] = (struct bvh_small){.range = *range, .node = node};
@@ -159,10 +151,10 @@ static void large_finish(struct level *level, const struct large *large) {
     memcpy(node->max, large->range.extent.max, sizeof node->max);
     out->node_count += 2;
     out->cost += BVH_NODE_COST * bvh_half_area(node->min, node->max);
-    uint64_t work = bvh_work(range_size(&large->range));
+    uint64_t work = bvh_work(bvh_range_size(&large->range));
     for (int side = 0; side < 2; side++) {
         struct bvh_range part = part_of(level, large, side);
-        work -= bvh_work(range_size(&part));
+        work -= bvh_work(bvh_range_size(&part));
         range_enter(level, &part, node->first + (uint32_t)side);
     }
     atomic_fetch_add(&level->watch->done, work);

@@ -1,16 +1,17 @@
-// The upper part of the builder: splits large sets level by level, with all threads on one level, until each is small enough for one thread.
+// The upper part of the builder: splits large sets level by level, with all threads on one level, until each is small enough for one
+// thread.
 //
-// The sets of a level are cut into chunks of a fixed size. The chunks are binned in parallel, the bins of a set are merged in the order of its
-// chunks, the split is chosen, and the chunks are moved in parallel to places that follow from their bins. So nothing depends on
-// the number of threads.
+// The sets of a level are cut into chunks of a fixed size. The chunks are binned in parallel, the bins of a set are merged in the order of
+// its chunks, the split is chosen, and the chunks are moved in parallel to places that follow from their bins. So nothing depends on the
+// number of threads.
 #ifndef BVH_TOP_H
 #define BVH_TOP_H
 
 #include "bvh/subtree.h"
 #include "bvh/watch.h"
 
-#define BVH_SUBTREE_SIZE 4096u      // primitives that are few enough for one thread
-#define BVH_CHUNK_SIZE 16384u       // primitives of a piece of a large set
+#define BVH_SUBTREE_SIZE 4096u // primitives that are few enough for one thread
+#define BVH_CHUNK_SIZE 16384u  // primitives of a piece of a large set
 
 // A small set, and the node of the top that it is to become.
 struct bvh_small {
@@ -20,10 +21,10 @@ struct bvh_small {
 
 // Zeroed is empty.
 struct bvh_top {
-    struct bvh_node *nodes;         // level by level; those of small sets have only their place
+    struct bvh_node *nodes; // level by level; those of small sets have only their place
     struct bvh_small *small;
     uint32_t node_count, small_count;
-    double cost;                    // Σ half area × BVH_NODE_COST of its inner nodes
+    double cost; // Σ half area × BVH_NODE_COST of its inner nodes
 };
 
 // Splits the root, which is all records of the workspace. GN_LIMIT, GN_CANCELLED.

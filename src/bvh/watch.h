@@ -8,8 +8,8 @@
 
 struct bvh_watch {
     struct context *ctx;
-    double start, reported;         // seconds; touched by the calling thread only
-    uint64_t work;                  // of the whole build, as bvh_work counts it
+    double start, reported; // seconds; touched by the calling thread only
+    uint64_t work;          // of the whole build, as bvh_work counts it
     _Atomic uint64_t done;
 };
 
