@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "device/candidate.h"
+#include "device/pipeline.h"
 #include "device/select.h"
 #include "device/spirv.h"
 #include "device/staging.h"
@@ -591,6 +592,58 @@ static void test_kernel_failures(void **state) {
     buffer_finish(&in, device);
 }
 
+// Kernels that differ in their buffers alone share a pipeline, and each keeps to its own buffers; another constant is another pipeline.
+static void test_pipelines_are_kept(void **state) {
+    (void)state;
+    enum { KERNELS = 3 };
+    struct device *device = fixture_device();
+    struct buffer in, out[KERNELS];
+    struct kernel kernel[KERNELS];
+    const struct buffer_params storage = {.name = "a", .kind = BUFFER_STORAGE, .size = 64, .host_writes = true, .host_reads = true};
+    const struct kernel_constant factors[KERNELS] = {{7, 11}, {7, 11}, {7, 13}};
+    const uint32_t given = 3, count = 1;
+    fixture_assert(buffer_init(&in, fixture_context(), device, &storage));
+    fixture_assert(buffer_upload(&in, fixture_context(), device, &given, sizeof given));
+    for (int i = 0; i < KERNELS; ++i) {
+        fixture_assert(buffer_init(out + i, fixture_context(), device, &storage));
+        const struct kernel_binding both[] = {{.binding = 0, .buffer = &in}, {.binding = 1, .buffer = out + i}};
+        const struct kernel_params params = {FIXTURE_KERNEL(device_scale), .constants = factors + i, .constant_count = 1,
+                                             .bindings = both, .binding_count = 2, .push_size = 4};
+        fixture_assert(kernel_init(kernel + i, fixture_context(), device, &params));
+    }
+    assert_ptr_equal(kernel[0].pipeline, kernel[1].pipeline);
+    assert_ptr_not_equal(kernel[0].pipeline, kernel[2].pipeline);
+    for (int i = 0; i < KERNELS; ++i) {
+        uint32_t result;
+        fixture_assert(kernel_run(kernel + i, fixture_context(), device, &count, 1, NULL));
+        fixture_assert(buffer_download(out + i, fixture_context(), device, &result, sizeof result));
+        assert_int_equal(result, given * factors[i].value);
+        kernel_finish(kernel + i, device);
+        buffer_finish(out + i, device);
+    }
+    buffer_finish(&in, device);
+}
+
+// More specializations than are kept: those that go may be asked for again.
+static void test_pipelines_are_limited(void **state) {
+    (void)state;
+    struct device *device = fixture_device();
+    struct buffer buffer;
+    const struct buffer_params storage = {.name = "a", .kind = BUFFER_STORAGE, .size = 64};
+    const struct kernel_binding both[] = {{.binding = 0, .buffer = &buffer}, {.binding = 1, .buffer = &buffer}};
+    fixture_assert(buffer_init(&buffer, fixture_context(), device, &storage));
+    for (uint32_t i = 0; i < 2 * PIPELINES_KEPT; ++i) {
+        struct kernel kernel;
+        const struct kernel_constant factor = {7, 1000 + i};
+        const struct kernel_params params = {FIXTURE_KERNEL(device_scale), .constants = &factor, .constant_count = 1, .bindings = both,
+                                             .binding_count = 2, .push_size = 4};
+        fixture_assert(kernel_init(&kernel, fixture_context(), device, &params));
+        kernel_finish(&kernel, device);
+    }
+    assert_int_equal(device->pipeline_count, PIPELINES_KEPT);
+    buffer_finish(&buffer, device);
+}
+
 // ---------------------------------------------------------------------------------------------------- time-outs and cancellation
 
 // A device of the child's own, and a kernel that is busy for as long as it gets workgroups.
@@ -725,6 +778,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_texels),
         cmocka_unit_test(test_images),
         cmocka_unit_test(test_kernel_failures),
+        cmocka_unit_test(test_pipelines_are_kept),
+        cmocka_unit_test(test_pipelines_are_limited),
         cmocka_unit_test(test_time_limits),
         cmocka_unit_test(fixture_silent),
     };

@@ -9,6 +9,7 @@
 #include "device/candidate.h"
 #include "device/commands.h"
 #include "device/instance.h"
+#include "device/pipeline.h"
 #include "device/select.h"
 #include "device/staging.h"
 
@@ -116,6 +117,7 @@ fail:
 }
 
 void device_finish(struct device *device) {
+    pipelines_finish(device);
     if (!device->lost) {
         if (device->handle) {
             staging_finish(device);

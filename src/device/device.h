@@ -15,6 +15,7 @@
 #define FIRST_DISPATCH_LIMIT_SECONDS 120.0
 
 struct buffer;
+struct pipeline;
 
 // An open device. It must stay where it is: the validation layer's messenger knows its address.
 struct device {
@@ -32,6 +33,8 @@ struct device {
     VkCommandBuffer commands;           // recorded anew for every submission
     VkFence fence;
     VkPipelineCache pipeline_cache;     // in memory only
+    struct pipeline *pipelines;         // compiled kernels, kept until the device is closed (device/pipeline.h)
+    uint32_t pipeline_count;
     VkQueryPool queries;                // two timestamps, or VK_NULL_HANDLE where the queue has none
     struct buffer *staging;             // for data on its way to or from memory that the host cannot see; made when first needed
     struct gn_device_info info;

@@ -1,31 +1,20 @@
 // A kernel: SPIR-V, specialized and bound to buffers and images; and its dispatch.
 #include "device/kernel.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "device/commands.h"
+#include "device/pipeline.h"
 #include "device/spirv.h"
 
-enum { MAX_BINDINGS = 32, MAX_CONSTANTS = 64, MAX_PUSH = 128, TYPE_COUNT = 3 };
+enum { MAX_PUSH = 128, TYPE_COUNT = 3 };
 
 static const VkDescriptorType TYPES[TYPE_COUNT] = {
     VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
     VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
     VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
 };
-
-static VkDescriptorType binding_type(const struct kernel_binding *binding) {
-    if (binding->image) return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    return binding->buffer->kind == BUFFER_TEXELS ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-}
-
-static bool kernel_fail(const struct kernel *kernel, struct context *ctx, struct device *device, const char *call, VkResult result) {
-    char text[160];
-    snprintf(text, sizeof text, "kernel '%.64s': %s", kernel->name, call);
-    return device_fail(device, ctx, GN_SHADER, text, result);
-}
 
 static bool check_binding(struct context *ctx, const char *name, const struct kernel_binding *binding) {
     const bool one = !binding->buffer != !binding->image;
@@ -35,7 +24,7 @@ static bool check_binding(struct context *ctx, const char *name, const struct ke
 
 static bool check_params(struct context *ctx, struct device *device, const struct kernel_params *params) {
     if (!device_alive(device, ctx)) return false;
-    if (params->constant_count > MAX_CONSTANTS || params->binding_count > MAX_BINDINGS || params->push_size > MAX_PUSH ||
+    if (params->constant_count > KERNEL_CONSTANTS || params->binding_count > KERNEL_BINDINGS || params->push_size > MAX_PUSH ||
         params->push_size % 4) {
         return fail(ctx, GN_INTERNAL, "kernel '%s': too many constants (%zu), bindings (%zu) or bytes to push (%u)", params->name,
                     params->constant_count, params->binding_count, params->push_size);
@@ -45,29 +34,6 @@ static bool check_params(struct context *ctx, struct device *device, const struc
     }
     const char *fault = spirv_fault(params->spirv, params->spirv_size);
     return !fault || fail(ctx, GN_SHADER, "kernel '%s': this is not SPIR-V that Vulkan 1.1 reads: %s", params->name, fault);
-}
-
-static bool init_layout(struct kernel *out, struct context *ctx, struct device *device, const struct kernel_params *params) {
-    VkDescriptorSetLayoutBinding bindings[MAX_BINDINGS];
-    for (size_t i = 0; i < params->binding_count; ++i) {
-        bindings[i] = (VkDescriptorSetLayoutBinding){.binding = params->bindings[i].binding,
-                                                     .descriptorType = binding_type(params->bindings + i),
-                                                     .descriptorCount = 1,
-                                                     .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
-    }
-    const VkDescriptorSetLayoutCreateInfo set = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                                                 .bindingCount = (uint32_t)params->binding_count,
-                                                 .pBindings = bindings};
-    VkResult result = vkCreateDescriptorSetLayout(device->handle, &set, NULL, &out->set_layout);
-    if (result != VK_SUCCESS) return kernel_fail(out, ctx, device, "vkCreateDescriptorSetLayout", result);
-    const VkPushConstantRange push = {.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT, .size = params->push_size};
-    const VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                             .setLayoutCount = 1,
-                                             .pSetLayouts = &out->set_layout,
-                                             .pushConstantRangeCount = params->push_size ? 1 : 0,
-                                             .pPushConstantRanges = &push};
-    result = vkCreatePipelineLayout(device->handle, &info, NULL, &out->layout);
-    return result == VK_SUCCESS || kernel_fail(out, ctx, device, "vkCreatePipelineLayout", result);
 }
 
 // A pool for this one set: as many descriptors of each type as there are bindings of it.
@@ -82,13 +48,13 @@ static bool init_set(struct kernel *out, struct context *ctx, struct device *dev
     const VkDescriptorPoolCreateInfo pool = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, .maxSets = 1, .poolSizeCount = used, .pPoolSizes = sizes};
     VkResult result = vkCreateDescriptorPool(device->handle, &pool, NULL, &out->pool);
-    if (result != VK_SUCCESS) return kernel_fail(out, ctx, device, "vkCreateDescriptorPool", result);
+    if (result != VK_SUCCESS) return kernel_fail(out->name, ctx, device, "vkCreateDescriptorPool", result);
     const VkDescriptorSetAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                               .descriptorPool = out->pool,
                                               .descriptorSetCount = 1,
-                                              .pSetLayouts = &out->set_layout};
+                                              .pSetLayouts = &out->pipeline->set_layout};
     result = vkAllocateDescriptorSets(device->handle, &info, &out->set);
-    return result == VK_SUCCESS || kernel_fail(out, ctx, device, "vkAllocateDescriptorSets", result);
+    return result == VK_SUCCESS || kernel_fail(out->name, ctx, device, "vkAllocateDescriptorSets", result);
 }
 
 static void bind(struct kernel *kernel, struct device *device, const struct kernel_binding *binding) {
@@ -107,43 +73,13 @@ static void bind(struct kernel *kernel, struct device *device, const struct kern
     vkUpdateDescriptorSets(device->handle, 1, &write, 0, NULL);
 }
 
-static bool init_pipeline(struct kernel *out, struct context *ctx, struct device *device, const struct kernel_params *params) {
-    const VkShaderModuleCreateInfo module = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = params->spirv_size, .pCode = params->spirv};
-    VkResult result = vkCreateShaderModule(device->handle, &module, NULL, &out->module);
-    if (result != VK_SUCCESS) return kernel_fail(out, ctx, device, "vkCreateShaderModule", result);
-    VkSpecializationMapEntry entries[MAX_CONSTANTS];
-    for (size_t i = 0; i < params->constant_count; ++i) {
-        const size_t offset = i * sizeof *params->constants + offsetof(struct kernel_constant, value);
-        entries[i] = (VkSpecializationMapEntry){params->constants[i].id, (uint32_t)offset, sizeof params->constants->value};
-    }
-    const VkSpecializationInfo constants = {.mapEntryCount = (uint32_t)params->constant_count,
-                                            .pMapEntries = entries,
-                                            .dataSize = params->constant_count * sizeof *params->constants,
-                                            .pData = params->constants};
-    const VkComputePipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = out->module,
-                  .pName = "main",
-                  .pSpecializationInfo = &constants},
-        .layout = out->layout,
-    };
-    result = vkCreateComputePipelines(device->handle, device->pipeline_cache, 1, &info, NULL, &out->pipeline);
-    if (result != VK_SUCCESS) return kernel_fail(out, ctx, device, "vkCreateComputePipelines", result);
-    device_label(device, VK_OBJECT_TYPE_PIPELINE, (uint64_t)out->pipeline, out->name);
-    return true;
-}
-
 bool kernel_init(struct kernel *out, struct context *ctx, struct device *device, const struct kernel_params *params) {
     memset(out, 0, sizeof *out);
     if (!check_params(ctx, device, params)) return false;
     out->name = params->name;
     out->push_size = params->push_size;
-    if (!init_layout(out, ctx, device, params) || !init_set(out, ctx, device, params)) goto fail;
+    if (!pipeline_acquire(&out->pipeline, ctx, device, params) || !init_set(out, ctx, device, params)) goto fail;
     for (size_t i = 0; i < params->binding_count; ++i) bind(out, device, params->bindings + i);
-    if (!init_pipeline(out, ctx, device, params)) goto fail;
     return true;
 fail:
     kernel_finish(out, device);
@@ -151,13 +87,8 @@ fail:
 }
 
 void kernel_finish(struct kernel *kernel, struct device *device) {
-    if (kernel->set_layout && !device->lost) {
-        vkDestroyPipeline(device->handle, kernel->pipeline, NULL);
-        vkDestroyShaderModule(device->handle, kernel->module, NULL);
-        vkDestroyDescriptorPool(device->handle, kernel->pool, NULL);
-        vkDestroyPipelineLayout(device->handle, kernel->layout, NULL);
-        vkDestroyDescriptorSetLayout(device->handle, kernel->set_layout, NULL);
-    }
+    if (kernel->pool && !device->lost) vkDestroyDescriptorPool(device->handle, kernel->pool, NULL);
+    pipeline_release(kernel->pipeline, device);
     memset(kernel, 0, sizeof *kernel);
 }
 
@@ -169,9 +100,9 @@ static void record_time(struct device *device, VkPipelineStageFlagBits stage, ui
 
 static void record(struct kernel *kernel, struct device *device, const void *push, uint32_t groups) {
     VkCommandBuffer commands = device->commands;
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->layout, 0, 1, &kernel->set, 0, NULL);
-    if (kernel->push_size) vkCmdPushConstants(commands, kernel->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, kernel->push_size, push);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline->handle);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline->layout, 0, 1, &kernel->set, 0, NULL);
+    if (kernel->push_size) vkCmdPushConstants(commands, kernel->pipeline->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, kernel->push_size, push);
     record_time(device, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0);
     vkCmdDispatch(commands, groups, 1, 1);
     record_time(device, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 1);
@@ -197,9 +128,9 @@ bool kernel_run(struct kernel *kernel, struct context *ctx, struct device *devic
     if (!commands_begin(device, ctx)) return false;
     record(kernel, device, push, groups);
     const double start = clock_seconds();
-    if (!commands_run(device, ctx, "kernel", kernel->name, kernel->warm ? device->dispatch_limit : device->first_dispatch_limit))
+    if (!commands_run(device, ctx, "kernel", kernel->name, kernel->pipeline->warm ? device->dispatch_limit : device->first_dispatch_limit))
         return false;
     if (seconds) *seconds = elapsed(device, clock_seconds() - start);
-    if (groups) kernel->warm = true;
+    if (groups) kernel->warm = kernel->pipeline->warm = true;
     return true;
 }

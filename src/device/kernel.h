@@ -13,6 +13,9 @@ struct kernel_binding {
 
 struct kernel_constant { uint32_t id, value; };    // specialization; bools are 0 or 1
 
+#define KERNEL_BINDINGS 32
+#define KERNEL_CONSTANTS 64
+
 // How to make a kernel. Arrays are borrowed for the call. Every binding that the shader declares and uses anywhere must be given, also
 // where a specialization constant removes the code that uses it: Vulkan judges the module as it is written.
 struct kernel_params {
@@ -20,22 +23,19 @@ struct kernel_params {
     const uint32_t *spirv;
     size_t spirv_size;                      // bytes
     const struct kernel_constant *constants;
-    size_t constant_count;                  // at most 64
+    size_t constant_count;                  // at most KERNEL_CONSTANTS
     const struct kernel_binding *bindings;
-    size_t binding_count;                   // at most 32
+    size_t binding_count;                   // at most KERNEL_BINDINGS
     uint32_t push_size;                     // bytes of push constants, at most 128
 };
 
 // Zeroed is absent; kernel_finish accepts half-made ones.
 struct kernel {
-    VkShaderModule module;
-    VkDescriptorSetLayout set_layout;
+    struct pipeline *pipeline;  // kept by the device, and shared by kernels that differ in nothing but what is bound
     VkDescriptorPool pool;
     VkDescriptorSet set;
-    VkPipelineLayout layout;
-    VkPipeline pipeline;
     uint32_t push_size;
-    bool warm;                  // has done work: the driver has compiled it
+    bool warm;                  // has done work
     const char *name;
 };
 
