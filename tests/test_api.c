@@ -204,7 +204,7 @@ static void render_faults_are_values(void **state) {
         if (!strstr(f->error.message, rows[i].says)) fail_msg("%s", f->error.message);
     }
     if (!f->device) return;
-    static const enum gn_accuracy missing[] = {GN_FP64, GN_ACCURACY_COUNT, (enum gn_accuracy)77};
+    static const enum gn_accuracy missing[] = {GN_ACCURACY_COUNT, (enum gn_accuracy)77};
     for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
         assert_null(gn_render(f->device, f->scene, &(struct gn_render_params){.accuracy = missing[i]}, &f->error));
         assert_int_equal(f->error.status, GN_USAGE);
@@ -302,7 +302,7 @@ static void device_rays(void **state) {
     struct fixture *f = *state;
     if (!f->device) skip();
     check_rays(f, f->device);
-    assert_false(gn_trace(f->device, f->scene, &(struct gn_trace_params){.accuracy = GN_FP64}, NULL, NULL, 0, NULL, &f->error));
+    assert_false(gn_trace(f->device, f->scene, &(struct gn_trace_params){.accuracy = GN_ACCURACY_COUNT}, NULL, NULL, 0, NULL, &f->error));
     assert_int_equal(f->error.status, GN_USAGE);
 }
 

@@ -57,7 +57,7 @@ static const struct option options[] = {
     {"seed", 0, "N", WHOLE, AT(seed), PICTURE, 0, MOST_WHOLE, NULL,
      "of the random numbers, 0 to 4294967295 [0]"},
     {"accuracy", 0, "TIER", CHOICE, AT(accuracy), RAYS, 0, 0, "robust|fast|exact|fp64",
-     "how hits are decided: fast, robust or exact [robust]; fp64 is planned"},
+     "how hits are decided: fast, robust, exact or fp64 [robust]"},
     {"reference", 0, NULL, FLAG, AT(reference), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL,
      "on the CPU in fp64 with exact decisions instead of on a device"},
     {"disable", 0, "EFFECT", LIST, AT(disable), PICTURE | COMMAND_PLAN, 0, 0, NULL,
