@@ -385,7 +385,7 @@ static bool check_depth(const struct gltf *gltf, size_t count) {
         for (uint32_t up = gltf->parents[i]; up; up = gltf->parents[up - 1]) {
             if (++depth <= MOST_DEPTH) continue;
             struct item item;
-            return get_item(&item, gltf, "nodes", (uint32_t)i) && at_fail(&item.at, "has more than %d nodes above it, expected fewer", MOST_DEPTH);
+            return get_item(&item, gltf, "nodes", (uint32_t)i) && at_fail(&item.at, "is its own parent or has more than %d above it, expected a tree", MOST_DEPTH);
         }
     }
     return true;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "scene/build.h"
+#include "scene/words.h"
 
 #define CHUNK_JSON 0x4e4f534au
 #define CHUNK_BIN 0x004e4942u
@@ -101,8 +102,8 @@ static bool load_file(struct gltf_buffers *out, const struct json_at *at, const 
     percent_decode(path + (strlen(path) - strlen(uri)));
     const char *trouble = path_unreadable(path);
     struct file_bytes file = {0};
-    bool done = trouble ? at_fail(at, "names %s, which cannot be read: %s", path, trouble) : file_read(&file, ctx, path, GN_SCENE);
-    if (done && file.size < size) done = at_fail(at, "names %s, which has %zu bytes, expected %zu", path, file.size, size);
+    bool done = trouble ? at_fail(at, "is \"%s\", expected a file that can be read: %s", excerpt_word(uri).text, trouble) : file_read(&file, ctx, path, GN_SCENE);
+    if (done && file.size < size) done = at_fail(at, "is \"%s\" of %zu bytes, expected %zu", excerpt_word(uri).text, file.size, size);
     char *room = done ? append(out, ctx, size) : NULL;
     if (room) memcpy(room, file.data, size);
     file_bytes_finish(&file);

@@ -92,7 +92,7 @@ static bool read_corner(struct corner *out, struct obj *obj) {
 static bool read_face(struct obj *obj) {
     struct text *text = &obj->text;
     struct corner first = {0}, last = {0}, corner;
-    const char *start = text->at;
+    const char *start = text->at - 1; // the 'f'
     size_t count = 0;
     for (text_skip_blanks(text); !text_line_ends(text); text_skip_blanks(text)) {
         if (!read_corner(&corner, obj)) return false;

@@ -177,7 +177,7 @@ static bool load_model(struct model *out, struct scene_build *build, const struc
     char *path = path_beside(build->scene->path, name);
     if (!path) return fail(build->ctx, GN_LIMIT, "no memory for a path");
     const char *trouble = path_unreadable(path);
-    const bool done = trouble ? at_fail(&at, "names %s, which cannot be read: %s", path, trouble) : model_load(out, build->ctx, path);
+    const bool done = trouble ? at_fail(&at, "is \"%s\", expected a file that can be read: %s", excerpt_word(name).text, trouble) : model_load(out, build->ctx, path);
     free(path);
     return done;
 }
