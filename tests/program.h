@@ -31,16 +31,16 @@
 #define PROGRAM_MOST_WORDS 32
 
 struct program_call {
-    const char *words;          // the arguments
-    const char *environment;    // words: NAME=value sets, NAME alone unsets [as it is]
-    const char *out;            // file for standard output; "" closes it, "|" is a pipe that nobody reads [kept for the result]
-    int signal, signals;        // to be sent, and how often: the first after 0.5 s, then every 0.1 s [none]
+    const char *words;       // the arguments
+    const char *environment; // words: NAME=value sets, NAME alone unsets [as it is]
+    const char *out;         // file for standard output; "" closes it, "|" is a pipe that nobody reads [kept for the result]
+    int signal, signals;     // to be sent, and how often: the first after 0.5 s, then every 0.1 s [none]
 };
 
 struct program_result {
-    int code;                   // exit code, or 1000 + the signal that ended it
-    char *out, *err;            // what it printed
-    double seconds;             // from the first signal, or the start, to the end
+    int code;        // exit code, or 1000 + the signal that ended it
+    char *out, *err; // what it printed
+    double seconds;  // from the first signal, or the start, to the end
 };
 
 static inline void program_pause(double seconds) {
@@ -70,10 +70,14 @@ static inline void program_child(const struct program_call *call, char **argumen
     int broken[2];
     if (chdir(PROGRAM_FOLDER) != 0) _exit(126);
     program_redirect("stderr.txt", STDERR_FILENO);
-    if (!call->out) program_redirect("stdout.txt", STDOUT_FILENO);
-    else if (!*call->out) close(STDOUT_FILENO);
-    else if (strcmp(call->out, "|") != 0) program_redirect(call->out, STDOUT_FILENO);
-    else if (pipe(broken) != 0 || dup2(broken[1], STDOUT_FILENO) < 0 || close(broken[0]) != 0 || close(broken[1]) != 0) _exit(126);
+    if (!call->out)
+        program_redirect("stdout.txt", STDOUT_FILENO);
+    else if (!*call->out)
+        close(STDOUT_FILENO);
+    else if (strcmp(call->out, "|") != 0)
+        program_redirect(call->out, STDOUT_FILENO);
+    else if (pipe(broken) != 0 || dup2(broken[1], STDOUT_FILENO) < 0 || close(broken[0]) != 0 || close(broken[1]) != 0)
+        _exit(126);
     for (; *variables; variables++) {
         char *value = strchr(*variables, '=');
         if (value) *value++ = 0;
@@ -93,7 +97,8 @@ static inline char *program_text(const char *path) {
 
 static inline struct program_result program_run(const struct program_call *call) {
     char *arguments[PROGRAM_MOST_WORDS + 1] = {"gnomon"}, *variables[PROGRAM_MOST_WORDS + 1];
-    char *words = program_split(call->words, arguments, 1), *names = program_split(call->environment ? call->environment : "", variables, 0);
+    char *words = program_split(call->words, arguments, 1),
+         *names = program_split(call->environment ? call->environment : "", variables, 0);
     struct program_result result = {0};
     int status;
     mkdir(TEST_OUTPUT_DIR, 0777);
@@ -134,7 +139,8 @@ static inline struct program_result program_expect(const char *words, int code, 
 static inline json_t *program_json(const char *words, const struct program_result *result) {
     json_error_t error;
     json_t *object = json_loads(result->out, JSON_REJECT_DUPLICATES, &error);
-    if (!object || !json_is_object(object)) fail_msg("gnomon %s: not one JSON object (%s):\n%s", words, object ? "" : error.text, result->out);
+    if (!object || !json_is_object(object))
+        fail_msg("gnomon %s: not one JSON object (%s):\n%s", words, object ? "" : error.text, result->out);
     return object;
 }
 

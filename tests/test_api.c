@@ -30,7 +30,7 @@ static const char scene_text[] =
 
 struct fixture {
     struct gn_scene *scene;
-    struct gn_device *device;   // NULL where there is none
+    struct gn_device *device; // NULL where there is none
     struct gn_error error;
 };
 
@@ -150,7 +150,7 @@ static void check_picture(struct fixture *f, struct gn_device *device) {
     const float *normal = gn_picture_pixels(picture, GN_AOV_NORMAL), *id = gn_picture_pixels(picture, GN_AOV_ID);
     assert_true(color && depth && normal && id);
     assert_null(gn_picture_pixels(picture, 8));
-    size_t middle = (size_t)(HEIGHT / 2) * WIDTH + WIDTH / 2;   // the sphere
+    size_t middle = (size_t)(HEIGHT / 2) * WIDTH + WIDTH / 2; // the sphere
     assert_true(color[0] == 0.25f && color[1] == 0.5f && color[2] == 1);
     assert_true(isinf(depth[0]) && id[0] == -1 && id[1] == -1 && normal[0] == 0 && normal[1] == 0 && normal[2] == 0);
     assert_true(id[2 * middle] == 0 && depth[middle] > 1.9f && depth[middle] < 2.3f && color[3 * middle] > 0.3f);
@@ -195,9 +195,14 @@ static void same_seed_same_bits(void **state) {
 
 static void render_faults_are_values(void **state) {
     struct fixture *f = *state;
-    static const struct { struct gn_render_params params; const char *says; } rows[] = {
-        {{.width = 65536}, "65535"}, {{.height = 4000000000u}, "65535"}, {{.spp = 1u << 25}, "samples"}, {{.aovs = 8}, "layers"},
-        {{.disable = "frobnication"}, "frobnication"}};
+    static const struct {
+        struct gn_render_params params;
+        const char *says;
+    } rows[] = {{{.width = 65536}, "65535"},
+                {{.height = 4000000000u}, "65535"},
+                {{.spp = 1u << 25}, "samples"},
+                {{.aovs = 8}, "layers"},
+                {{.disable = "frobnication"}, "frobnication"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_null(gn_render(NULL, f->scene, &rows[i].params, &f->error));
         assert_int_equal(f->error.status, GN_USAGE);
@@ -242,7 +247,8 @@ static bool there(const char *name) {
 
 static void pictures_are_saved(void **state) {
     struct fixture *f = *state;
-    static const char *const files[] = {"p.png", "p.depth.png", "p.normal.png", "p.id.png", "p.pfm", "p.depth.pfm", "p.normal.pfm", "p.id.pfm", "p.exr"};
+    static const char *const files[] = {"p.png",       "p.depth.png",  "p.normal.png", "p.id.png", "p.pfm",
+                                        "p.depth.pfm", "p.normal.pfm", "p.id.pfm",     "p.exr"};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[1024];
         snprintf(path, sizeof path, "%s/%s", FOLDER, files[i]);
@@ -278,12 +284,16 @@ static void check_rays(struct fixture *f, struct gn_device *device) {
         {{0, 0, 0}, 0, {0, 0, -1}, INFINITY}, {{0, 0, 0}, 0, {0, 0, -2}, 100}, {{0, 0, 0}, 0, {0, 1, 0}, 100},
         {{0, 0, 0}, 0, {0, 0, -1}, 2},        {{0, 0, -1}, 0, {0, -1, 0}, 9},  {{NAN, 0, 0}, 0, {0, 0, -1}, 9},
     };
-    static const struct { float t; int32_t object; uint32_t invalid; } right[] = {
-        {2, 0, 0}, {1, 0, 0}, {INFINITY, -1, 0}, {INFINITY, -1, 0}, {1, 1, 0}, {INFINITY, -1, 1}};
+    static const struct {
+        float t;
+        int32_t object;
+        uint32_t invalid;
+    } right[] = {{2, 0, 0}, {1, 0, 0}, {INFINITY, -1, 0}, {INFINITY, -1, 0}, {1, 1, 0}, {INFINITY, -1, 1}};
     enum { COUNT = sizeof rays / sizeof *rays };
     struct gn_hit hits[COUNT];
     struct gn_trace_stats stats;
-    if (!gn_trace(device, f->scene, &(struct gn_trace_params){.repeat = 3}, rays, hits, COUNT, &stats, &f->error)) fail_msg("%s", f->error.message);
+    if (!gn_trace(device, f->scene, &(struct gn_trace_params){.repeat = 3}, rays, hits, COUNT, &stats, &f->error))
+        fail_msg("%s", f->error.message);
     for (int i = 0; i < COUNT; i++) {
         assert_int_equal(hits[i].object, right[i].object);
         if (!(hits[i].t == right[i].t)) fail_msg("ray %d: t is %g", i, (double)hits[i].t);
@@ -317,7 +327,7 @@ static void device_is_verified(void **state) {
     assert_true(result.pass && result.pixels == WIDTH * HEIGHT && result.max_abs < 1e-4);
     assert_true(gn_picture_width(difference) == WIDTH);
     gn_picture_destroy(difference);
-    const struct gn_verify_params strict = {.tolerance = 1e-12};    // which fp32 cannot keep
+    const struct gn_verify_params strict = {.tolerance = 1e-12}; // which fp32 cannot keep
     assert_true(gn_verify(f->device, f->scene, &strict, &result, NULL, &f->error));
     assert_true(!result.pass && result.pixels_differing > result.pixels_allowed);
 }

@@ -38,7 +38,11 @@ static void need_device(void) {
 
 // ------------------------------------------------------------------------------------------------------------------ faults
 
-static const struct { const char *words; int code; const char *says; } faults[] = {
+static const struct {
+    const char *words;
+    int code;
+    const char *says;
+} faults[] = {
     {"", 2, "a command is missing"},
     {"rende", 2, "did you mean render?"},
     {"frobnicate", 2, "no command 'frobnicate'"},
@@ -140,11 +144,13 @@ static void json_is_one_object_in_every_fault(void **state) {
 static void environment_is_heard(void **state) {
     (void)state;
     need_device();
-    struct program_result result = program_run(&(struct program_call){.words = "render scene.json -o a.png", .environment = "GNOMON_DEVICE=frobnicator"});
+    struct program_result result =
+        program_run(&(struct program_call){.words = "render scene.json -o a.png", .environment = "GNOMON_DEVICE=frobnicator"});
     assert_int_equal(result.code, GN_USAGE);
     assert_non_null(strstr(result.err, "frobnicator"));
     program_free(&result);
-    result = program_run(&(struct program_call){.words = "render scene.json -o env.png --device cpu", .environment = "GNOMON_DEVICE=frobnicator"});
+    result = program_run(
+        &(struct program_call){.words = "render scene.json -o env.png --device cpu", .environment = "GNOMON_DEVICE=frobnicator"});
     assert_int_equal(result.code, 0);
     program_free(&result);
     result = program_run(&(struct program_call){.words = "render scene.json -o env.png", .environment = "GNOMON_DEVICE="});
@@ -156,8 +162,8 @@ static void no_driver_is_no_device(void **state) {
     (void)state;
     static const char *const words[] = {"devices", "render scene.json -o a.png", "verify scene.json"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        struct program_result result = program_run(
-            &(struct program_call){.words = words[i], .environment = "VK_DRIVER_FILES=/nonexistent.json VK_ICD_FILENAMES=/nonexistent.json"});
+        struct program_result result = program_run(&(struct program_call){
+            .words = words[i], .environment = "VK_DRIVER_FILES=/nonexistent.json VK_ICD_FILENAMES=/nonexistent.json"});
         assert_int_equal(result.code, GN_NO_DEVICE);
         assert_non_null(strstr(result.err, "mesa-vulkan-drivers"));
         program_free(&result);
@@ -199,8 +205,9 @@ static void help_is_complete_and_narrow(void **state) {
 
 static void overview_and_version(void **state) {
     (void)state;
-    static const struct { const char *words, *says; } rows[] = {
-        {"--help", "Exit codes"}, {"-h", "Exit codes"}, {"help", "compare A B"}, {"--version", "gnomon 0."}, {"help help", ""}};
+    static const struct {
+        const char *words, *says;
+    } rows[] = {{"--help", "Exit codes"}, {"-h", "Exit codes"}, {"help", "compare A B"}, {"--version", "gnomon 0."}, {"help help", ""}};
     for (size_t i = 0; i + 1 < sizeof rows / sizeof *rows; i++) {
         struct program_result result = program_expect(rows[i].words, 0, "");
         if (!strstr(result.out, rows[i].says)) fail_msg("gnomon %s: no '%s'", rows[i].words, rows[i].says);
@@ -223,7 +230,8 @@ static void check_render(const char *extra, const char *accuracy) {
     snprintf(words, sizeof words, "render scene.json -o out.exr --size 40x30 --spp 2 --seed 4294967295 --json %s", extra);
     struct program_result result = program_expect(words, 0, "out.exr");
     json_t *object = program_json(words, &result);
-    assert_members(object, "image width height spp device driver accuracy effects rays nonfinite_pixels undecided_rays time_ms mrays_per_s");
+    assert_members(object,
+                   "image width height spp device driver accuracy effects rays nonfinite_pixels undecided_rays time_ms mrays_per_s");
     assert_members(json_object_get(object, "time_ms"), "total startup scene bvh pipeline trace output");
     assert_string_equal(json_string_value(json_object_get(object, "image")), "out.exr");
     assert_string_equal(json_string_value(json_object_get(object, "accuracy")), accuracy);
@@ -323,7 +331,11 @@ static void trace_device(void **state) {
 static void verify_passes_and_can_fail(void **state) {
     (void)state;
     need_device();
-    static const struct { const char *words; int code; bool pass; } rows[] = {
+    static const struct {
+        const char *words;
+        int code;
+        bool pass;
+    } rows[] = {
         {"verify scene.json --json", 0, true},
         {"verify scene.json --json --spp 3 --size 33x17 --seed 7 --accuracy fast -o difference.png", 0, true},
         {"verify scene.json --json --tolerance 1e-12 -o difference.exr", 1, false},
@@ -346,7 +358,8 @@ static void plan_lists_effects(void **state) {
     json_t *object = program_json("plan", &result), *effect;
     size_t i, known = 0;
     json_array_foreach(json_object_get(object, "effects"), i, effect) {
-        const char *name = json_string_value(json_object_get(effect, "name")), *state_text = json_string_value(json_object_get(effect, "state"));
+        const char *name = json_string_value(json_object_get(effect, "name")),
+                   *state_text = json_string_value(json_object_get(effect, "state"));
         const char *because = json_string_value(json_object_get(effect, "because"));
         assert_true(name && state_text && because && *because);
         bool on = strcmp(state_text, "on") == 0;
@@ -385,7 +398,11 @@ static void compare_measures(void **state) {
     program_free(&result);
     result = program_expect("render scene.json -o two.pfm --reference --disable specular", 0, "");
     program_free(&result);
-    static const struct { const char *words; int code; bool equal; } rows[] = {
+    static const struct {
+        const char *words;
+        int code;
+        bool equal;
+    } rows[] = {
         {"compare one.pfm one.pfm --json --max-abs 0 --max-flip 0 -o heat.png", 0, true},
         {"compare one.pfm two.pfm --json", 0, false},
         {"compare one.pfm two.pfm --json --max-abs 0.01", 1, false},
@@ -415,9 +432,17 @@ static void compare_measures(void **state) {
 
 static void output_that_cannot_be_written(void **state) {
     (void)state;
-    static const struct { const char *words, *out; } rows[] = {
-        {"plan scene.json --json", "/dev/full"}, {"plan scene.json", "/dev/full"}, {"--help", "/dev/full"}, {"render --help", "/dev/full"},
-        {"plan scene.json --json", "|"},         {"plan scene.json", "|"},         {"plan scene.json --json", ""}, {"--version", ""},
+    static const struct {
+        const char *words, *out;
+    } rows[] = {
+        {"plan scene.json --json", "/dev/full"},
+        {"plan scene.json", "/dev/full"},
+        {"--help", "/dev/full"},
+        {"render --help", "/dev/full"},
+        {"plan scene.json --json", "|"},
+        {"plan scene.json", "|"},
+        {"plan scene.json --json", ""},
+        {"--version", ""},
         {"render scene.json -o full.png --reference --json", "/dev/full"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -502,20 +527,20 @@ static int cache_folders(const char *environment) {
 static void every_driver_and_setting_has_its_cache(void **state) {
     (void)state;
     if (strchr(PROGRAM_FOLDER, ' ')) skip();
-    assert_int_equal(cache_folders("MESA_SHADER_CACHE_DIR=/tmp"), 0);          // the user's choice
+    assert_int_equal(cache_folders("MESA_SHADER_CACHE_DIR=/tmp"), 0); // the user's choice
     assert_int_equal(cache_folders("MESA_SHADER_CACHE_DISABLE=true"), 0);
     assert_int_equal(cache_folders(""), 1);
-    assert_int_equal(cache_folders(""), 1);                                     // the same again
+    assert_int_equal(cache_folders(""), 1); // the same again
     assert_int_equal(cache_folders("LP_NATIVE_VECTOR_WIDTH=128"), 2);
     assert_int_equal(cache_folders("GALLIVM_PERF=nopt"), 3);
-    assert_int_equal(cache_folders("LANG=C GNOMON_DEVICE=cpu"), 3);             // has nothing to do with it
+    assert_int_equal(cache_folders("LANG=C GNOMON_DEVICE=cpu"), 3); // has nothing to do with it
     program_write("driver.json", "{\"ICD\": {\"library_path\": \"./driver.so\"}}");
     program_write("driver.so", "one");
     char driver[300];
     snprintf(driver, sizeof driver, "VK_DRIVER_FILES=%s/driver.json VK_ICD_FILENAMES=%s/driver.json", PROGRAM_FOLDER, PROGRAM_FOLDER);
     assert_int_equal(cache_folders(driver), 4);
     assert_int_equal(cache_folders(driver), 4);
-    program_write("driver.so", "another");                                      // an update in the same place
+    program_write("driver.so", "another"); // an update in the same place
     assert_int_equal(cache_folders(driver), 5);
 }
 

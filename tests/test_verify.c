@@ -16,8 +16,16 @@ struct picture {
     float color[3 * PIXELS], id[2 * PIXELS], depth[PIXELS];
 };
 
-// Value `device` where the reference has `reference`, in `count` pixels; as many wrong hits as said, at this depth instead of 8. Does it pass?
-static const struct { float device, reference; int count, wrong; double tolerance; bool pass; int differing, nonfinite; float depth; } rows[] = {
+// Value `device` where the reference has `reference`, in `count` pixels; as many wrong hits as said, at this depth instead of 8. Does it
+// pass?
+static const struct {
+    float device, reference;
+    int count, wrong;
+    double tolerance;
+    bool pass;
+    int differing, nonfinite;
+    float depth;
+} rows[] = {
     {0.5f, 0.5f, 0, 0, VERIFY_TOLERANCE, true, 0, 0, 8},
     {0.5f + 0.99f / 255, 0.5f, PIXELS, 0, VERIFY_TOLERANCE, true, 0, 0, 8},
     {0.5f + 1.01f / 255, 0.5f, 1, 0, VERIFY_TOLERANCE, true, 1, 0, 8},
@@ -47,15 +55,18 @@ static void each_limit_holds(void **state) {
     (void)state;
     for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
         struct picture device = {0}, reference = {0};
-        for (int i = 0; i < rows[row].count; i++) device.color[3 * i + i % 3] = rows[row].device, reference.color[3 * i + i % 3] = rows[row].reference;
+        for (int i = 0; i < rows[row].count; i++)
+            device.color[3 * i + i % 3] = rows[row].device, reference.color[3 * i + i % 3] = rows[row].reference;
         for (int i = 0; i < PIXELS; i++) device.depth[i] = reference.depth[i] = 8;
         for (int i = 0; i < rows[row].wrong; i++) device.id[2 * i + i % 2] = 1, device.depth[i] = rows[row].depth;
-        struct image a = image_of(device.color, 3), b = image_of(reference.color, 3), c = image_of(device.id, 2), d = image_of(reference.id, 2);
+        struct image a = image_of(device.color, 3), b = image_of(reference.color, 3), c = image_of(device.id, 2),
+                     d = image_of(reference.id, 2);
         struct image e = image_of(device.depth, 1), f = image_of(reference.depth, 1);
         struct gn_error error;
         struct context ctx = context_make(NULL, &error);
         struct gn_verify_result result = {0};
-        assert_true(verify_pictures(&result, NULL, &ctx, (struct verify_side){&a, &c, &e}, (struct verify_side){&b, &d, &f}, rows[row].tolerance));
+        assert_true(
+            verify_pictures(&result, NULL, &ctx, (struct verify_side){&a, &c, &e}, (struct verify_side){&b, &d, &f}, rows[row].tolerance));
         if (result.pass != rows[row].pass) fail_msg("row %zu: pass is %d", row, result.pass);
         if ((int)result.pixels_differing != rows[row].differing) fail_msg("row %zu: %d pixels differ", row, (int)result.pixels_differing);
         if ((int)result.nonfinite_pixels != rows[row].nonfinite) fail_msg("row %zu: %d are not finite", row, (int)result.nonfinite_pixels);
@@ -86,7 +97,8 @@ static void the_difference_and_the_worst_pixel(void **state) {
     struct gn_error error;
     struct context ctx = context_make(NULL, &error);
     struct gn_verify_result result = {0};
-    assert_true(verify_pictures(&result, &difference, &ctx, (struct verify_side){&a, &id, &depth}, (struct verify_side){&b, &id, &depth}, 0.1));
+    assert_true(
+        verify_pictures(&result, &difference, &ctx, (struct verify_side){&a, &id, &depth}, (struct verify_side){&b, &id, &depth}, 0.1));
     for (int i = 0; i < 6; i++) assert_true(fabsf(difference.pixels[SIDE + i] - seen[i]) <= 1e-6f);
     assert_true(result.worst_x == 4 && result.worst_y == 1 && result.max_abs == 5);
     double rmse = sqrt((0.05 * 0.05 + 0.1 * 0.1 + 0.2 * 0.2 + 5 * 5) / (3 * PIXELS));
@@ -96,7 +108,9 @@ static void the_difference_and_the_worst_pixel(void **state) {
 
 static void few_pixels_may_differ(void **state) {
     (void)state;
-    static const struct { uint64_t pixels, allowed; } sizes[] = {{1, 2}, {64, 2}, {20000, 2}, {30000, 3}, {262144, 26}, {4294836225u, 429483}};
+    static const struct {
+        uint64_t pixels, allowed;
+    } sizes[] = {{1, 2}, {64, 2}, {20000, 2}, {30000, 3}, {262144, 26}, {4294836225u, 429483}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) assert_int_equal(verify_allowed(sizes[i].pixels), sizes[i].allowed);
 }
 

@@ -37,8 +37,8 @@ void gn_device_destroy(struct gn_device *device) {
 
 const struct gn_device_info *gn_device_info(const struct gn_device *device) { return &device->device.info; }
 
-bool gn_device_list(const struct gn_device_params *params, struct gn_device_info *infos, uint32_t capacity, uint32_t *count,
-                    int *selected, struct gn_error *error) {
+bool gn_device_list(const struct gn_device_params *params, struct gn_device_info *infos, uint32_t capacity, uint32_t *count, int *selected,
+                    struct gn_error *error) {
     static const struct gn_device_params defaults;
     if (!params) params = &defaults;
     *count = 0, *selected = -1;
@@ -71,9 +71,14 @@ void gn_scene_destroy(struct gn_scene *scene) {
 void gn_scene_info(const struct gn_scene *scene, struct gn_scene_info *info) {
     const struct scene *s = &scene->scene;
     *info = (struct gn_scene_info){
-        .shapes = s->shape_count, .materials = s->material_count, .lights = s->light_count,
-        .triangles = scene_triangle_count(s), .spheres = scene_sphere_count(s),
-        .width = s->film.width, .height = s->film.height, .spp = s->film.spp,
+        .shapes = s->shape_count,
+        .materials = s->material_count,
+        .lights = s->light_count,
+        .triangles = scene_triangle_count(s),
+        .spheres = scene_sphere_count(s),
+        .width = s->film.width,
+        .height = s->film.height,
+        .spp = s->film.spp,
     };
 }
 
@@ -88,8 +93,8 @@ bool scene_bvh(struct gn_scene *scene, struct context *ctx) {
 
 // ----------------------------------------------------------------------------------------------------------------- plan
 
-bool gn_plan(struct gn_scene *scene, const struct gn_render_params *params, struct gn_effect *effects, uint32_t capacity,
-             uint32_t *count, struct gn_error *error) {
+bool gn_plan(struct gn_scene *scene, const struct gn_render_params *params, struct gn_effect *effects, uint32_t capacity, uint32_t *count,
+             struct gn_error *error) {
     *count = 0;
     struct context ctx = context_make(params ? params->host : NULL, error);
     struct job job;

@@ -15,22 +15,22 @@ struct gn_device {
 
 struct gn_scene {
     struct scene scene;
-    struct bvh bvh;             // built at the first use; has_bvh says whether it was
+    struct bvh bvh; // built at the first use; has_bvh says whether it was
     bool has_bvh;
     double load_ms, bvh_ms;
 };
 
 struct gn_picture {
-    struct image color, depth, normal, id;  // those that were not asked for are empty
-    enum transfer transfer;                 // for 8-bit files
+    struct image color, depth, normal, id; // those that were not asked for are empty
+    enum transfer transfer;                // for 8-bit files
     struct gn_render_stats stats;
 };
 
 // What a render job comes to when the scene's defaults are filled in.
 struct job {
     uint32_t width, height, spp, seed, aovs, tile_pixels;
-    uint32_t tier;              // TIER_*; without meaning for the reference
-    const char *accuracy;       // its name
+    uint32_t tier;        // TIER_*; without meaning for the reference
+    const char *accuracy; // its name
     struct plan plan;
 };
 

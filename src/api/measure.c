@@ -16,8 +16,8 @@ static struct gn_picture *picture_of(struct context *ctx, const struct image *va
     return NULL;
 }
 
-bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn_verify_params *params,
-               struct gn_verify_result *result, struct gn_picture **difference, struct gn_error *error) {
+bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn_verify_params *params, struct gn_verify_result *result,
+               struct gn_picture **difference, struct gn_error *error) {
     static const struct gn_verify_params defaults;
     if (!params) params = &defaults;
     *result = (struct gn_verify_result){0};
@@ -51,8 +51,7 @@ bool gn_compare(const char *path_a, const char *path_b, struct gn_compare_result
     struct context ctx = context_make(NULL, error);
     struct image a = {0}, b = {0}, values = {0};
     bool done = image_read(&a, &ctx, path_a) && image_read(&b, &ctx, path_b) &&
-                compare_images(result, heat ? &values : NULL, &ctx, &a, &b, 0) &&
-                (!heat || (*heat = picture_of(&ctx, &values)));
+                compare_images(result, heat ? &values : NULL, &ctx, &a, &b, 0) && (!heat || (*heat = picture_of(&ctx, &values)));
     image_finish(&values);
     image_finish(&b);
     image_finish(&a);

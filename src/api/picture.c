@@ -1,7 +1,7 @@
 // Finished pictures: their layers, and how they become files.
 //
-// An EXR holds all layers. PNG and PFM hold one: the others go beside it, name.depth.png and so on. The files for the layers are written first
-// and the colour last, so that where the named file is, everything is; after a failure nothing is left.
+// An EXR holds all layers. PNG and PFM hold one: the others go beside it, name.depth.png and so on. The files for the layers are written
+// first and the colour last, so that where the named file is, everything is; after a failure nothing is left.
 #include "api/handles.h"
 
 #include <math.h>
@@ -27,11 +27,16 @@ const struct gn_render_stats *gn_picture_stats(const struct gn_picture *picture)
 
 const float *gn_picture_pixels(const struct gn_picture *picture, uint32_t aov) {
     switch (aov) {
-    case 0: return picture->color.pixels;
-    case GN_AOV_DEPTH: return picture->depth.pixels;
-    case GN_AOV_NORMAL: return picture->normal.pixels;
-    case GN_AOV_ID: return picture->id.pixels;
-    default: return NULL;
+    case 0:
+        return picture->color.pixels;
+    case GN_AOV_DEPTH:
+        return picture->depth.pixels;
+    case GN_AOV_NORMAL:
+        return picture->normal.pixels;
+    case GN_AOV_ID:
+        return picture->id.pixels;
+    default:
+        return NULL;
     }
 }
 
@@ -39,8 +44,8 @@ const float *gn_picture_pixels(const struct gn_picture *picture, uint32_t aov) {
 
 static size_t pixel_count(const struct image *image) { return (size_t)image->width * image->height; }
 
-// Depth in grey: the nearest white, the farthest nearly black, between them by the reciprocal, so that a far background does not wash out what is near.
-// What is not hit is black.
+// Depth in grey: the nearest white, the farthest nearly black, between them by the reciprocal, so that a far background does not wash out
+// what is near. What is not hit is black.
 static bool view_of_depth(struct image *out, struct context *ctx, const struct image *depth) {
     if (!image_init(out, ctx, depth->width, depth->height, 1, "the picture of the depths")) return false;
     size_t count = pixel_count(depth);
@@ -100,10 +105,10 @@ static bool padded_id(struct image *out, struct context *ctx, const struct image
 // ---------------------------------------------------------------------------------------------------------------- files
 
 struct side_file {
-    const char *name;           // name.<this>.png
+    const char *name; // name.<this>.png
     const struct image *image;
     bool (*view)(struct image *, struct context *, const struct image *);
-    enum transfer transfer;     // of the view
+    enum transfer transfer; // of the view
 };
 
 #define SIDE_FILES 3
@@ -148,8 +153,10 @@ static bool save_apart(const struct gn_picture *picture, struct context *ctx, co
         if (!files[i].image->pixels) continue;
         char *name = side_path(ctx, path, files[i].name);
         done = name && (png ? write_view : write_raw)(&files[i], ctx, name);
-        if (done) written[i] = name;
-        else free(name);
+        if (done)
+            written[i] = name;
+        else
+            free(name);
     }
     done = done && (png ? image_write_png(&picture->color, ctx, path, picture->transfer) : image_write_pfm(&picture->color, ctx, path));
     for (int i = 0; i < SIDE_FILES; i++) {
@@ -159,8 +166,12 @@ static bool save_apart(const struct gn_picture *picture, struct context *ctx, co
     return done;
 }
 
-static bool save_png(const struct gn_picture *picture, struct context *ctx, const char *path) { return save_apart(picture, ctx, path, true); }
-static bool save_pfm(const struct gn_picture *picture, struct context *ctx, const char *path) { return save_apart(picture, ctx, path, false); }
+static bool save_png(const struct gn_picture *picture, struct context *ctx, const char *path) {
+    return save_apart(picture, ctx, path, true);
+}
+static bool save_pfm(const struct gn_picture *picture, struct context *ctx, const char *path) {
+    return save_apart(picture, ctx, path, false);
+}
 
 static bool save_exr(const struct gn_picture *picture, struct context *ctx, const char *path) {
     const struct image_layer all[] = {

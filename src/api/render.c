@@ -18,7 +18,10 @@
 static const char *const accuracy_names[GN_ACCURACY_COUNT] = {
     [GN_ROBUST] = "robust", [GN_FAST] = "fast", [GN_EXACT] = "exact", [GN_FP64] = "fp64"};
 
-static const struct { uint32_t tier; const char *name; } tiers[] = {
+static const struct {
+    uint32_t tier;
+    const char *name;
+} tiers[] = {
 #define X(number, id, name, text) {TIER_##id, name},
     TIERS(X)
 #undef X
@@ -48,7 +51,10 @@ bool job_make(struct job *out, struct context *ctx, const struct gn_scene *scene
         .width = params->width ? params->width : film->width,
         .height = params->height ? params->height : film->height,
         .spp = params->spp ? params->spp : film->spp,
-        .seed = params->seed, .aovs = params->aovs, .tile_pixels = params->tile_pixels, .accuracy = "reference",
+        .seed = params->seed,
+        .aovs = params->aovs,
+        .tile_pixels = params->tile_pixels,
+        .accuracy = "reference",
     };
     if (out->width > MOST_PIXELS || out->height > MOST_PIXELS)
         return fail(ctx, GN_USAGE, "a picture of %u × %u pixels: at most %u along a side", out->width, out->height, MOST_PIXELS);
@@ -74,8 +80,14 @@ static bool render_on_device(struct gn_picture *picture, struct context *ctx, st
                              const struct job *job) {
     struct render_film film = {0};
     const struct render_params params = {
-        .width = job->width, .height = job->height, .spp = job->spp, .seed = job->seed, .tier = job->tier,
-        .effects = job->plan.effects, .aovs = job->aovs, .tile_pixels = job->tile_pixels,
+        .width = job->width,
+        .height = job->height,
+        .spp = job->spp,
+        .seed = job->seed,
+        .tier = job->tier,
+        .effects = job->plan.effects,
+        .aovs = job->aovs,
+        .tile_pixels = job->tile_pixels,
     };
     if (!render_picture(&film, ctx, device, &scene->scene, &scene->bvh, &params) || !device_validated(device, ctx)) {
         render_film_finish(&film);
@@ -91,8 +103,12 @@ static bool render_on_device(struct gn_picture *picture, struct context *ctx, st
 static bool render_on_cpu(struct gn_picture *picture, struct context *ctx, const struct gn_scene *scene, const struct job *job) {
     struct reference_film film = {0};
     const struct reference_params params = {
-        .width = job->width, .height = job->height, .spp = job->spp, .seed = job->seed,
-        .effects = job->plan.effects, .aovs = job->aovs,
+        .width = job->width,
+        .height = job->height,
+        .spp = job->spp,
+        .seed = job->seed,
+        .effects = job->plan.effects,
+        .aovs = job->aovs,
     };
     double start = clock_seconds();
     if (!reference_render(&film, ctx, &scene->scene, &scene->bvh, &params)) {

@@ -1,5 +1,5 @@
-// The hash covers: the environment that selects or tunes a driver; every driver manifest (name, size, time); and the library each manifest names, so
-// that a new Mesa in an old place gets a new folder. Some 20 system calls, no processes.
+// The hash covers: the environment that selects or tunes a driver; every driver manifest (name, size, time); and the library each manifest
+// names, so that a new Mesa in an old place gets a new folder. Some 20 system calls, no processes.
 #include "cli/cache_dir.h"
 
 #include <dirent.h>
@@ -29,8 +29,8 @@ static bool starts_with(const char *text, const char *start) { return strncmp(te
 
 // The hash of each variable is added, not chained: their order in the environment means nothing.
 static void mix_environment(uint64_t *hash) {
-    static const char *const starts[] = {"VK_DRIVER_FILES=", "VK_ICD_FILENAMES=", "VK_ADD_DRIVER_FILES=", "LD_LIBRARY_PATH=",
-                                         "LP_",              "GALLIVM_",          "MESA_LOADER_",         "LIBGL_"};
+    static const char *const starts[] = {
+        "VK_DRIVER_FILES=", "VK_ICD_FILENAMES=", "VK_ADD_DRIVER_FILES=", "LD_LIBRARY_PATH=", "LP_", "GALLIVM_", "MESA_LOADER_", "LIBGL_"};
     uint64_t sum = 0;
     for (char **variable = environ; *variable; variable++) {
         for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
@@ -131,8 +131,8 @@ static void mix_drivers(uint64_t *hash) {
     while (next_item(item, &files)) mix_manifest(hash, item);
     while (!chosen && next_item(item, &added)) mix_manifest(hash, item);
     snprintf(own_data, sizeof own_data, "%s/.local/share", environment("HOME", ""));
-    const char *lists[] = {environment("XDG_CONFIG_DIRS", "/etc/xdg"), "/usr/local/etc:/etc",
-                           environment("XDG_DATA_HOME", own_data), environment("XDG_DATA_DIRS", "/usr/local/share:/usr/share")};
+    const char *lists[] = {environment("XDG_CONFIG_DIRS", "/etc/xdg"), "/usr/local/etc:/etc", environment("XDG_DATA_HOME", own_data),
+                           environment("XDG_DATA_DIRS", "/usr/local/share:/usr/share")};
     for (size_t i = 0; !chosen && i < sizeof lists / sizeof *lists; i++) {
         while (next_item(item, &lists[i])) {
             snprintf(folder, sizeof folder, "%s/vulkan/icd.d", item);
@@ -162,8 +162,11 @@ void cache_dir_choose(void) {
     int size;
     mix_environment(&hash);
     mix_drivers(&hash);
-    if (*cache == '/') size = snprintf(path, sizeof path, "%s/gnomon/mesa-%016llx", cache, (unsigned long long)hash);
-    else if (*home == '/' && access(home, W_OK | X_OK) == 0) size = snprintf(path, sizeof path, "%s/.cache/gnomon/mesa-%016llx", home, (unsigned long long)hash);
-    else return;
+    if (*cache == '/')
+        size = snprintf(path, sizeof path, "%s/gnomon/mesa-%016llx", cache, (unsigned long long)hash);
+    else if (*home == '/' && access(home, W_OK | X_OK) == 0)
+        size = snprintf(path, sizeof path, "%s/.cache/gnomon/mesa-%016llx", home, (unsigned long long)hash);
+    else
+        return;
     if (size > 0 && (size_t)size < sizeof path && make_folders(path)) setenv("MESA_SHADER_CACHE_DIR", path, 1);
 }

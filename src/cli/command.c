@@ -1,7 +1,6 @@
 #include "cli/command.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +13,9 @@
 #include "cli/cache_dir.h"
 #include "cli/interrupt.h"
 
-struct context run_context(struct run *run) { return context_make(&run->host, &run->error); }
+struct context run_context(struct run *run) {
+    return context_make(&run->host, &run->error);
+}
 
 bool run_fail(struct run *run, enum gn_status status, const char *format, ...) {
     run->error.status = status;
@@ -53,9 +54,16 @@ struct gn_device *run_device(struct run *run) {
 struct gn_render_params run_render_params(struct run *run) {
     const struct settings *settings = &run->settings;
     return (struct gn_render_params){
-        .width = settings->size.width, .height = settings->size.height, .spp = settings->spp, .seed = settings->seed,
-        .accuracy = (enum gn_accuracy)settings->accuracy, .aovs = settings->aovs, .disable = settings->disable,
-        .no_prune = settings->no_prune, .tile_pixels = settings->tile_pixels, .host = &run->host,
+        .width = settings->size.width,
+        .height = settings->size.height,
+        .spp = settings->spp,
+        .seed = settings->seed,
+        .accuracy = (enum gn_accuracy)settings->accuracy,
+        .aovs = settings->aovs,
+        .disable = settings->disable,
+        .no_prune = settings->no_prune,
+        .tile_pixels = settings->tile_pixels,
+        .host = &run->host,
     };
 }
 
@@ -94,49 +102,4 @@ bool run_save(struct run *run, struct gn_picture *picture, const char *path) {
     bool saved = gn_picture_save(picture, path, &run->error);
     interrupt_release();
     return saved;
-}
-
-// ------------------------------------------------------------------------------------------------------------------ JSON
-
-// The length of the UTF-8 character at `text`, or 0 if it is none. Overlong forms and surrogates are left to json_string.
-static size_t character_length(const unsigned char *text) {
-    size_t length = text[0] < 0x80 ? 1 : text[0] >> 5 == 6 ? 2 : text[0] >> 4 == 14 ? 3 : text[0] >> 3 == 30 ? 4 : 0;
-    for (size_t i = 1; i < length; i++)
-        if (text[i] >> 6 != 2) return 0;
-    return length;
-}
-
-json_t *json_words(const char *text) {
-    json_t *value = json_string(text);
-    if (value) return value;
-    char *copy = malloc(strlen(text) + 1), *to = copy;
-    if (!copy) return NULL;
-    while (*text) {
-        char character[5] = "";
-        size_t length = character_length((const unsigned char *)text);
-        memcpy(character, text, length);
-        json_t *valid = length ? json_string(character) : NULL;
-        if (valid) memcpy(to, character, length);
-        else *to = '?', length = 1;
-        json_decref(valid);
-        to += length, text += length;
-    }
-    *to = 0;
-    value = json_string(copy);
-    free(copy);
-    return value;
-}
-
-json_t *json_number(double value) { return isfinite(value) ? json_real(value) : json_null(); }
-
-json_t *json_ms(double ms) { return json_number(round(1e3 * ms) / 1e3); }
-
-json_t *json_names(const char *list) {
-    json_t *names = json_array();
-    while (*list) {
-        size_t length = strcspn(list, ",");
-        json_array_append_new(names, json_stringn(list, length));
-        list += length + (list[length] != 0);
-    }
-    return names;
 }

@@ -5,9 +5,8 @@
 #ifndef CLI_COMMAND_H
 #define CLI_COMMAND_H
 
-#include <jansson.h>
-
 #include "base/context.h"
+#include "cli/json.h"
 #include "cli/options.h"
 #include "cli/progress.h"
 
@@ -18,22 +17,22 @@ struct run {
     const struct command *command;
     struct settings settings;
     struct progress_view view;
-    struct gn_host host;            // for every call of the library
+    struct gn_host host; // for every call of the library
     struct gn_error error;
-    bool device_from_environment;   // settings.device is GNOMON_DEVICE
-    double started;                 // clock_seconds() when the program began
-    json_t *result;                 // with --json: what will be printed
+    bool device_from_environment; // settings.device is GNOMON_DEVICE
+    double started;               // clock_seconds() when the program began
+    json_t *result;               // with --json: what will be printed
 };
 
 struct command {
     const char *name;
-    uint32_t bit;                   // COMMAND_*
-    int positionals;                // how many
-    const char *arguments;          // for the usage line, e.g. "SCENE -o FILE"
-    const char *names;              // of the positional arguments, e.g. "SCENE"
-    const char *summary;            // one line
-    const char *about;              // paragraphs
-    const char *examples;           // lines
+    uint32_t bit;          // COMMAND_*
+    int positionals;       // how many
+    const char *arguments; // for the usage line, e.g. "SCENE -o FILE"
+    const char *names;     // of the positional arguments, e.g. "SCENE"
+    const char *summary;   // one line
+    const char *about;     // paragraphs
+    const char *examples;  // lines
     bool (*run)(struct run *run);
 };
 
@@ -70,12 +69,5 @@ bool run_save(struct run *run, struct gn_picture *picture, const char *path);
 
 // Milliseconds since the program began.
 double run_ms(const struct run *run);
-
-// JSON values. A text that is not UTF-8 keeps what is; a number that is not finite becomes null; times are rounded to microseconds.
-json_t *json_words(const char *text);
-json_t *json_number(double value);
-json_t *json_ms(double ms);
-// ["a", "b"] of "a,b".
-json_t *json_names(const char *list);
 
 #endif

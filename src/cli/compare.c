@@ -9,11 +9,20 @@
 static bool keeps(double value, double limit) { return limit < 0 || value <= limit; }
 
 static json_t *as_json(const struct gn_compare_result *result, bool pass) {
-    return json_pack("{s:b, s:I, s:I, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I}", "pass", pass, "width", (json_int_t)result->width,
-                     "height", (json_int_t)result->height, "max_abs", json_number(result->max_abs), "rmse", json_number(result->rmse),
-                     "psnr_db", json_number(result->psnr_db), "flip", json_number(result->flip),
-                     "pixels_differing", (json_int_t)result->pixels_differing, "nonfinite_pixels", (json_int_t)result->nonfinite_pixels,
-                     "worst_x", (json_int_t)result->worst_x, "worst_y", (json_int_t)result->worst_y);
+    const struct json_member members[] = {
+        {"pass", json_boolean(pass)},
+        {"width", json_integer(result->width)},
+        {"height", json_integer(result->height)},
+        {"max_abs", json_number(result->max_abs)},
+        {"rmse", json_number(result->rmse)},
+        {"psnr_db", json_number(result->psnr_db)},
+        {"flip", json_number(result->flip)},
+        {"pixels_differing", json_integer((json_int_t)result->pixels_differing)},
+        {"nonfinite_pixels", json_integer((json_int_t)result->nonfinite_pixels)},
+        {"worst_x", json_integer(result->worst_x)},
+        {"worst_y", json_integer(result->worst_y)},
+    };
+    return JSON_MEMBERS(members);
 }
 
 static void print(const struct gn_compare_result *result) {
@@ -21,8 +30,10 @@ static void print(const struct gn_compare_result *result) {
     if (result->nonfinite_pixels) printf("not finite  %" PRIu64 " pixels\n", result->nonfinite_pixels);
     printf("max         %.6g at (%" PRIu32 ", %" PRIu32 ")\n", result->max_abs, result->worst_x, result->worst_y);
     printf("RMSE        %.6g\n", result->rmse);
-    if (isinf(result->psnr_db)) printf("PSNR        infinite\n");
-    else printf("PSNR        %.2f dB\n", result->psnr_db);
+    if (isinf(result->psnr_db))
+        printf("PSNR        infinite\n");
+    else
+        printf("PSNR        %.2f dB\n", result->psnr_db);
     printf("FLIP        %.6f\n", result->flip);
 }
 
@@ -36,7 +47,10 @@ bool command_compare(struct run *run) {
     gn_picture_destroy(heat);
     if (!done) return false;
     bool pass = keeps(result.max_abs, settings->max_abs) && keeps(result.flip, settings->max_flip);
-    if (!settings->json) print(&result);
-    else if (!run_result(run, as_json(&result, pass))) return false;
-    return pass || run_fail(run, GN_CHECK_FAILED, "the pictures differ by more than allowed: max %.3g, FLIP %.3g", result.max_abs, result.flip);
+    if (!settings->json)
+        print(&result);
+    else if (!run_result(run, as_json(&result, pass)))
+        return false;
+    return pass ||
+           run_fail(run, GN_CHECK_FAILED, "the pictures differ by more than allowed: max %.3g, FLIP %.3g", result.max_abs, result.flip);
 }

@@ -7,12 +7,16 @@
 
 static const struct command commands[] = {
     {
-        .name = "render", .bit = COMMAND_RENDER, .run = command_render,
-        .positionals = 1, .names = "SCENE", .arguments = "SCENE -o FILE",
+        .name = "render",
+        .bit = COMMAND_RENDER,
+        .run = command_render,
+        .positionals = 1,
+        .names = "SCENE",
+        .arguments = "SCENE -o FILE",
         .summary = "a picture",
-        .about = "Renders SCENE and writes the picture to FILE. SCENE is a scene file (.json, format version 1) or a model (.obj, .ply, .stl, "
-                 ".gltf, .glb), which gets a framed camera and a light if it has none. The same seed gives the same picture, to the bit, on the "
-                 "same device. FILE is complete or not there: it is written under another name and renamed at the end.",
+        .about = "Renders SCENE and writes the picture to FILE. SCENE is a scene file (.json, format version 1) or a model (.obj, .ply, "
+                 ".stl, .gltf, .glb), which gets a framed camera and a light if it has none. The same seed gives the same picture, to "
+                 "the bit, on the same device. FILE is complete or not there: it is written under another name and renamed at the end.",
         .examples = "  gnomon render scenes/demo.json -o demo.png\n"
                     "  gnomon render bunny.obj -o bunny.png --size 1024x1024 --spp 16\n"
                     "  gnomon render scene.json -o scene.exr --aov depth,normal,id\n"
@@ -20,54 +24,74 @@ static const struct command commands[] = {
                     "  gnomon render scene.json -o flat.png --disable shadows --json",
     },
     {
-        .name = "trace", .bit = COMMAND_TRACE, .run = command_trace,
-        .positionals = 1, .names = "SCENE", .arguments = "SCENE --rays IN.npy -o OUT.npy",
+        .name = "trace",
+        .bit = COMMAND_TRACE,
+        .run = command_trace,
+        .positionals = 1,
+        .names = "SCENE",
+        .arguments = "SCENE --rays IN.npy -o OUT.npy",
         .summary = "hits for a batch of rays",
-        .about = "Shoots a batch of rays at SCENE and writes what each hits first. Directions need not be unit; t is in units of the direction, in "
-                 "the open interval from tmin to tmax. object and primitive are -1 and t is infinite for a miss. Bit 0 of flags: the ray was "
-                 "invalid; bit 1: the decision needed more than the first stage of the tier.",
+        .about = "Shoots a batch of rays at SCENE and writes what each hits first. Directions need not be unit; t is in units of the "
+                 "direction, in the open interval from tmin to tmax. object and primitive are -1 and t is infinite for a miss. Bit 0 of "
+                 "flags: the ray was invalid; bit 1: the decision needed more than the first stage of the tier.",
         .examples = "  gnomon trace scene.json --rays rays.npy -o hits.npy\n"
                     "  gnomon trace scene.json --rays rays.npy -o truth.npy --reference\n"
                     "  gnomon trace scene.json --rays rays.npy -o hits.npy --any --repeat 10",
     },
     {
-        .name = "verify", .bit = COMMAND_VERIFY, .run = command_verify,
-        .positionals = 1, .names = "SCENE", .arguments = "SCENE",
+        .name = "verify",
+        .bit = COMMAND_VERIFY,
+        .run = command_verify,
+        .positionals = 1,
+        .names = "SCENE",
+        .arguments = "SCENE",
         .summary = "the device against the fp64 CPU reference, pixel by pixel",
-        .about = "Renders SCENE on the device, and on the CPU in fp64 with exact decisions, with the same sample positions and random numbers, and "
-                 "compares. A pixel differs when a colour channel, in linear light, is off by more than the tolerance (for values over 1: and by "
-                 "more than 2^-12 of the value). A hit is wrong when the first sample of a pixel hit another object or primitive, and a tie when it is at the "
-                 "right depth all the same, on a surface that coincides. Where an edge passes within rounding of a sample either answer is legitimate, "
-                 "so 1 pixel in 10 000 (2 in a small picture) may differ, and as many hits may be wrong and no ties; no value may be NaN or infinite. "
-                 "Exit code 1 when the check fails.",
+        .about = "Renders SCENE on the device, and on the CPU in fp64 with exact decisions, with the same sample positions and random "
+                 "numbers, and compares. A pixel differs when a colour channel, in linear light, is off by more than the tolerance (for "
+                 "values over 1: and by more than 2^-12 of the value). A hit is wrong when the first sample of a pixel hit another "
+                 "object or primitive, and a tie when it is at the right depth all the same, on a surface that coincides. Where an edge "
+                 "passes within rounding of a sample either answer is legitimate, so 1 pixel in 10 000 (2 in a small picture) may "
+                 "differ, and as many hits may be wrong and no ties; no value may be NaN or infinite. Exit code 1 when the check fails.",
         .examples = "  gnomon verify scenes/demo.json\n"
                     "  gnomon verify scene.json --size 256x256 --spp 4 -o difference.png\n"
                     "  gnomon verify scene.json --accuracy fast --json",
     },
     {
-        .name = "plan", .bit = COMMAND_PLAN, .run = command_plan,
-        .positionals = 1, .names = "SCENE", .arguments = "SCENE",
+        .name = "plan",
+        .bit = COMMAND_PLAN,
+        .run = command_plan,
+        .positionals = 1,
+        .names = "SCENE",
+        .arguments = "SCENE",
         .summary = "which effects run, which are pruned, and why",
         .about = "Lists the effects that SCENE calls for. What it does not call for is left out of the kernels that run on the device.",
         .examples = "  gnomon plan scenes/demo.json\n"
                     "  gnomon plan scene.json --spp 16 --disable shadows",
     },
     {
-        .name = "devices", .bit = COMMAND_DEVICES, .run = command_devices,
-        .positionals = 0, .names = "", .arguments = "",
+        .name = "devices",
+        .bit = COMMAND_DEVICES,
+        .run = command_devices,
+        .positionals = 0,
+        .names = "",
+        .arguments = "",
         .summary = "Vulkan devices and drivers, and which one would be used",
-        .about = "Lists what Vulkan offers on this machine. The device that is marked is the one that the other commands would use with the same "
-                 "--device.",
+        .about = "Lists what Vulkan offers on this machine. The device that is marked is the one that the other commands would use with "
+                 "the same --device.",
         .examples = "  gnomon devices\n"
                     "  gnomon devices --device cpu\n"
                     "  VK_DRIVER_FILES=/path/to/driver.json gnomon devices",
     },
     {
-        .name = "compare", .bit = COMMAND_COMPARE, .run = command_compare,
-        .positionals = 2, .names = "A B", .arguments = "A B",
+        .name = "compare",
+        .bit = COMMAND_COMPARE,
+        .run = command_compare,
+        .positionals = 2,
+        .names = "A B",
+        .arguments = "A B",
         .summary = "two images: metrics, worst pixel, heat map",
-        .about = "Compares two images of the same size (.png, .exr, .pfm). Maximum, RMSE and PSNR are over linear light, with the peak at 1. FLIP "
-                 "(Andersson et al. 2020) is what a person would notice when switching between the two, 0 to 1.",
+        .about = "Compares two images of the same size (.png, .exr, .pfm). Maximum, RMSE and PSNR are over linear light, with the peak "
+                 "at 1. FLIP (Andersson et al. 2020) is what a person would notice when switching between the two, 0 to 1.",
         .examples = "  gnomon compare a.png b.png\n"
                     "  gnomon compare a.exr b.exr -o heat.png\n"
                     "  gnomon compare a.png golden.png --max-flip 0.01",
@@ -100,7 +124,8 @@ void help_version(void) { printf("gnomon %s\n", gn_version()); }
 
 void help_overview(void) {
     printf("gnomon %s: a headless ray tracer in Vulkan compute shaders\n\n"
-           "Usage: gnomon COMMAND ...\n\n", gn_version());
+           "Usage: gnomon COMMAND ...\n\n",
+           gn_version());
     for (size_t i = 0; i < COMMAND_COUNT; i++) {
         int column = printf("  %-7s %s", commands[i].name, commands[i].arguments);
         print_wrapped(commands[i].summary, column, 41);

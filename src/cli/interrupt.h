@@ -4,9 +4,9 @@
 
 #include <stdbool.h>
 
-// Catches SIGINT, SIGTERM and SIGHUP (unless nohup has it ignored), and ignores SIGPIPE and SIGXFSZ, so that a closed pipe and a full quota are write
-// errors. The first signal sets a flag. If the program has not ended 0.8 s later, or at the second signal, it ends at once with 130; with `json` the one
-// object is printed even then. `terminal`: a progress bar may have to be wiped out.
+// Catches SIGINT, SIGTERM and SIGHUP (unless nohup has it ignored), and ignores SIGPIPE and SIGXFSZ, so that a closed pipe and a full quota
+// are write errors. The first signal sets a flag. If the program has not ended 0.8 s later, or at the second signal, it ends at once with
+// 130; with `json` the one object is printed even then. `terminal`: a progress bar may have to be wiped out.
 void interrupt_install(bool json, bool terminal);
 
 // Whether a signal came.

@@ -21,18 +21,25 @@ static bool on_progress(void *user, const struct gn_progress *progress) {
 
 static void on_message(void *user, enum gn_level level, const char *text) {
     struct run *run = user;
-    if (run->settings.quiet || (level == GN_LEVEL_INFO && run->settings.verbose < 1) || (level == GN_LEVEL_DEBUG && run->settings.verbose < 2)) return;
+    if (run->settings.quiet || (level == GN_LEVEL_INFO && run->settings.verbose < 1) ||
+        (level == GN_LEVEL_DEBUG && run->settings.verbose < 2))
+        return;
     run_say(run, "gnomon: %s%s", level == GN_LEVEL_WARNING ? "warning: " : "", text);
 }
 
 // ------------------------------------------------------------------------------------------------------------------ ending
+
+static json_t *error_json(const struct gn_error *error) {
+    const struct json_member members[] = {{"status", json_integer(error->status)}, {"message", json_words(error->message)}};
+    return JSON_MEMBERS(members);
+}
 
 // Prints the one JSON object: the result, and what went wrong, if something did. A check that failed has said so in its result.
 static bool print_json(struct run *run) {
     json_t *result = run->result ? run->result : json_object();
     run->result = NULL;
     if (run->error.status > GN_CHECK_FAILED || (run->error.status && json_object_size(result) == 0))
-        json_object_set_new(result, "error", json_pack("{s:i, s:o}", "status", (int)run->error.status, "message", json_words(run->error.message)));
+        json_object_set_new(result, "error", error_json(&run->error));
     bool printed = json_dumpf(result, stdout, JSON_REAL_PRECISION(12)) == 0 && putchar('\n') != EOF;
     json_decref(result);
     return printed;
@@ -89,8 +96,10 @@ static bool help(struct run *run, int argc, char **argv) {
     const struct command *command = argc > 0 ? command_find(argv[0]) : NULL;
     if (argc > 0 && argv[0][0] != '-' && !command) return no_command(run, argv[0]);
     run->settings.json = false;
-    if (command) help_command(command);
-    else help_overview();
+    if (command)
+        help_command(command);
+    else
+        help_overview();
     return true;
 }
 

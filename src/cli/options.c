@@ -10,27 +10,27 @@
 #include "cli/wrap.h"
 
 enum kind {
-    FLAG,       // bool
-    COUNT,      // uint32_t, one more each time
-    TEXT,       // const char *
-    WHOLE,      // uint32_t from low to high
-    REAL,       // double from low to high
-    SIZE,       // struct size, each side from low to high
-    CHOICE,     // int, the index in `choices`
-    SET,        // uint32_t, bit i for choice i; a comma list, may be repeated
-    LIST,       // char[1024], comma-separated; may be repeated
+    FLAG,   // bool
+    COUNT,  // uint32_t, one more each time
+    TEXT,   // const char *
+    WHOLE,  // uint32_t from low to high
+    REAL,   // double from low to high
+    SIZE,   // struct size, each side from low to high
+    CHOICE, // int, the index in `choices`
+    SET,    // uint32_t, bit i for choice i; a comma list, may be repeated
+    LIST,   // char[1024], comma-separated; may be repeated
 };
 
 // One option. Texts in help use the words of `value`.
 struct option {
-    const char *name;       // without its dashes
-    char letter;            // its short form, or 0
-    const char *value;      // what stands for its value in help; NULL: it takes none
+    const char *name;  // without its dashes
+    char letter;       // its short form, or 0
+    const char *value; // what stands for its value in help; NULL: it takes none
     enum kind kind;
-    size_t offset;          // in struct settings
-    uint32_t commands;      // COMMAND_* bits
+    size_t offset;     // in struct settings
+    uint32_t commands; // COMMAND_* bits
     double low, high;
-    const char *choices;    // separated by |
+    const char *choices; // separated by |
     const char *help;
 };
 
@@ -46,16 +46,12 @@ static const struct option options[] = {
      "write the hits here: a structured array (t, u, v, object, primitive, flags) of shape (N,)"},
     {"output", 'o', "FILE", TEXT, AT(output), COMMAND_VERIFY, 0, 0, NULL,
      "write the difference here as a picture in false colour: black is equal, the middle of the scale is the tolerance"},
-    {"output", 'o', "FILE", TEXT, AT(output), COMMAND_COMPARE, 0, 0, NULL,
-     "write the FLIP error here as a picture in false colour"},
+    {"output", 'o', "FILE", TEXT, AT(output), COMMAND_COMPARE, 0, 0, NULL, "write the FLIP error here as a picture in false colour"},
     {"rays", 0, "IN.npy", TEXT, AT(rays), COMMAND_TRACE, 0, 0, NULL,
      "read the rays here: float32, shape (N, 8), each row ox oy oz tmin dx dy dz tmax"},
-    {"size", 0, "WxH", SIZE, AT(size), PICTURE | COMMAND_PLAN, 1, 65535, NULL,
-     "pixels, e.g. 640x480 [the scene's]"},
-    {"spp", 0, "N", WHOLE, AT(spp), PICTURE | COMMAND_PLAN, 1, 16777216, NULL,
-     "samples per pixel, 1 to 16777216 [the scene's]"},
-    {"seed", 0, "N", WHOLE, AT(seed), PICTURE, 0, MOST_WHOLE, NULL,
-     "of the random numbers, 0 to 4294967295 [0]"},
+    {"size", 0, "WxH", SIZE, AT(size), PICTURE | COMMAND_PLAN, 1, 65535, NULL, "pixels, e.g. 640x480 [the scene's]"},
+    {"spp", 0, "N", WHOLE, AT(spp), PICTURE | COMMAND_PLAN, 1, 16777216, NULL, "samples per pixel, 1 to 16777216 [the scene's]"},
+    {"seed", 0, "N", WHOLE, AT(seed), PICTURE, 0, MOST_WHOLE, NULL, "of the random numbers, 0 to 4294967295 [0]"},
     {"accuracy", 0, "TIER", CHOICE, AT(accuracy), RAYS, 0, 0, "robust|fast|exact|fp64",
      "how hits are decided: fast, robust, exact or fp64 [robust]"},
     {"reference", 0, NULL, FLAG, AT(reference), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL,
@@ -68,28 +64,20 @@ static const struct option options[] = {
      "also write depth, normal or id; may be repeated, or a comma list. Layers of an .exr; beside a .png or .pfm: name.depth.png …"},
     {"tile-pixels", 0, "N", WHOLE, AT(tile_pixels), PICTURE, 1, MOST_WHOLE, NULL,
      "pixels of one piece of device work [measured]; the picture does not depend on it"},
-    {"stats", 0, NULL, FLAG, AT(stats), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL,
-     "print where the time went, and what was counted"},
-    {"any", 0, NULL, FLAG, AT(any), COMMAND_TRACE, 0, 0, NULL,
-     "occlusion only: object is 0 for occluded, -1 for free"},
-    {"repeat", 0, "N", WHOLE, AT(repeat), COMMAND_TRACE, 1, 1000000, NULL,
-     "shoot the batch N times and report the median time [1]"},
+    {"stats", 0, NULL, FLAG, AT(stats), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL, "print where the time went, and what was counted"},
+    {"any", 0, NULL, FLAG, AT(any), COMMAND_TRACE, 0, 0, NULL, "occlusion only: object is 0 for occluded, -1 for free"},
+    {"repeat", 0, "N", WHOLE, AT(repeat), COMMAND_TRACE, 1, 1000000, NULL, "shoot the batch N times and report the median time [1]"},
     {"tolerance", 0, "E", REAL, AT(tolerance), COMMAND_VERIFY, 1e-12, 1e12, NULL,
      "a pixel differs when a colour channel, in linear light, is off by more [1/255]"},
-    {"max-abs", 0, "E", REAL, AT(max_abs), COMMAND_COMPARE, 0, 1e300, NULL,
-     "fail (exit 1) when a channel is off by more, in linear light"},
-    {"max-flip", 0, "E", REAL, AT(max_flip), COMMAND_COMPARE, 0, 1, NULL,
-     "fail (exit 1) when the mean FLIP error is larger, 0 to 1"},
+    {"max-abs", 0, "E", REAL, AT(max_abs), COMMAND_COMPARE, 0, 1e300, NULL, "fail (exit 1) when a channel is off by more, in linear light"},
+    {"max-flip", 0, "E", REAL, AT(max_flip), COMMAND_COMPARE, 0, 1, NULL, "fail (exit 1) when the mean FLIP error is larger, 0 to 1"},
     {"device", 0, "D", TEXT, AT(device), COMMAND_ALL, 0, 0, NULL,
      "the Vulkan device: index, part of its name, uuid:…, cpu or gpu [$GNOMON_DEVICE, else a GPU if there is one, else the CPU]"},
-    {"json", 0, NULL, FLAG, AT(json), COMMAND_ALL, 0, 0, NULL,
-     "one JSON object on standard output, everything else on standard error"},
+    {"json", 0, NULL, FLAG, AT(json), COMMAND_ALL, 0, 0, NULL, "one JSON object on standard output, everything else on standard error"},
     {"progress", 0, "MODE", CHOICE, AT(progress), COMMAND_ALL, 0, 0, "auto|bar|plain|none",
      "auto, bar, plain or none [auto: a bar on a terminal, a line now and then elsewhere]"},
-    {"threads", 0, "N", WHOLE, AT(threads), COMMAND_ALL, 1, 256, NULL,
-     "CPU threads of gnomon's own work [one for each core]"},
-    {"validate", 0, NULL, FLAG, AT(validate), COMMAND_ALL, 0, 0, NULL,
-     "turn the Vulkan validation layer on; its messages are errors"},
+    {"threads", 0, "N", WHOLE, AT(threads), COMMAND_ALL, 1, 256, NULL, "CPU threads of gnomon's own work [one for each core]"},
+    {"validate", 0, NULL, FLAG, AT(validate), COMMAND_ALL, 0, 0, NULL, "turn the Vulkan validation layer on; its messages are errors"},
     {"quiet", 'q', NULL, FLAG, AT(quiet), COMMAND_ALL, 0, 0, NULL, "say nothing but errors"},
     {"verbose", 'v', NULL, COUNT, AT(verbose), COMMAND_ALL, 0, 0, NULL, "say more; twice: everything"},
     {"help", 'h', NULL, FLAG, AT(help), COMMAND_ALL, 0, 0, NULL, "this text"},
@@ -153,7 +141,8 @@ static bool parse_size(struct parser *parser, const struct option *option, const
     if (read_whole(&to->width, text, &end, option->low, option->high) && (*end == 'x' || *end == 'X') &&
         read_whole(&to->height, end + 1, &end, option->low, option->high) && !*end)
         return true;
-    return wrong(parser, "--%s %s: expected WIDTHxHEIGHT, each from %.0f to %.0f, e.g. 640x480", option->name, text, option->low, option->high);
+    return wrong(parser, "--%s %s: expected WIDTHxHEIGHT, each from %.0f to %.0f, e.g. 640x480", option->name, text, option->low,
+                 option->high);
 }
 
 // The index of text[0 … length) among choices such as "a|b|c", or -1.
@@ -167,7 +156,8 @@ static int choice_index(const char *choices, const char *text, size_t length) {
 }
 
 static bool wrong_choice(struct parser *parser, const struct option *option, const char *text) {
-    return wrong(parser, "--%s %s: expected %s%s", option->name, text, option->kind == SET ? "a comma list of " : "one of ", option->choices);
+    return wrong(parser, "--%s %s: expected %s%s", option->name, text, option->kind == SET ? "a comma list of " : "one of ",
+                 option->choices);
 }
 
 static bool parse_choice(struct parser *parser, const struct option *option, const char *text) {
@@ -198,13 +188,21 @@ static bool parse_list(struct parser *parser, const struct option *option, const
 
 static bool parse_value(struct parser *parser, const struct option *option, const char *text) {
     switch (option->kind) {
-    case WHOLE: return parse_whole(parser, option, text);
-    case REAL: return parse_real(parser, option, text);
-    case SIZE: return parse_size(parser, option, text);
-    case CHOICE: return parse_choice(parser, option, text);
-    case SET: return parse_set(parser, option, text);
-    case LIST: return parse_list(parser, option, text);
-    default: *(const char **)((char *)parser->out + option->offset) = text; return true;
+    case WHOLE:
+        return parse_whole(parser, option, text);
+    case REAL:
+        return parse_real(parser, option, text);
+    case SIZE:
+        return parse_size(parser, option, text);
+    case CHOICE:
+        return parse_choice(parser, option, text);
+    case SET:
+        return parse_set(parser, option, text);
+    case LIST:
+        return parse_list(parser, option, text);
+    default:
+        *(const char **)((char *)parser->out + option->offset) = text;
+        return true;
     }
 }
 
@@ -252,8 +250,10 @@ static bool take_option(struct parser *parser, const struct option *option, cons
     parser->seen[option - options] = true;
     if (!option->value) {
         if (value) return wrong(parser, "--%s takes no value", option->name);
-        if (option->kind == COUNT) ++*(uint32_t *)to;
-        else *(bool *)to = true;
+        if (option->kind == COUNT)
+            ++*(uint32_t *)to;
+        else
+            *(bool *)to = true;
         return true;
     }
     if (again && option->kind != SET && option->kind != LIST) return wrong(parser, "--%s is given twice", option->name);
@@ -300,7 +300,8 @@ static bool asks_for_help(int argc, char **argv) {
     return false;
 }
 
-bool options_parse(struct settings *out, struct gn_error *error, int argc, char **argv, uint32_t command, int positionals, const char *names) {
+bool options_parse(struct settings *out, struct gn_error *error, int argc, char **argv, uint32_t command, int positionals,
+                   const char *names) {
     *out = (struct settings){.max_abs = -1, .max_flip = -1};
     struct parser parser = {.out = out, .error = error, .argc = argc, .argv = argv, .command = command};
     if ((out->help = asks_for_help(argc, argv))) return true;

@@ -21,29 +21,32 @@ enum {
 
 enum progress_mode { PROGRESS_AUTO, PROGRESS_BAR, PROGRESS_PLAIN, PROGRESS_NONE };
 
-struct size { uint32_t width, height; };
+struct size {
+    uint32_t width, height;
+};
 
 // What the command line said; zero where it said nothing. Texts belong to argv, but for `disable`.
 struct settings {
     const char *positionals[MOST_POSITIONALS];
     int positional_count;
     bool help, json, quiet, validate, reference, no_prune, stats, any;
-    uint32_t verbose;               // how often -v was given
-    int progress;                   // enum progress_mode
+    uint32_t verbose; // how often -v was given
+    int progress;     // enum progress_mode
     uint32_t threads;
     const char *device, *output, *rays;
     struct size size;
     uint32_t spp, seed, repeat, tile_pixels;
-    int accuracy;                   // enum gn_accuracy
-    uint32_t aovs;                  // enum gn_aov, or-ed
-    char disable[1024];             // comma-separated
+    int accuracy;       // enum gn_accuracy
+    uint32_t aovs;      // enum gn_aov, or-ed
+    char disable[1024]; // comma-separated
     double tolerance;
-    double max_abs, max_flip;       // negative: not given
+    double max_abs, max_flip; // negative: not given
 };
 
-// Parses argv[0 … argc) for one command, which takes `positionals` arguments called `names` ("SCENE" or "A B"). GN_USAGE, with a message for people,
-// in *error on failure. `--help` anywhere wins over every fault.
-bool options_parse(struct settings *out, struct gn_error *error, int argc, char **argv, uint32_t command, int positionals, const char *names);
+// Parses argv[0 … argc) for one command, which takes `positionals` arguments called `names` ("SCENE" or "A B"). GN_USAGE, with a message
+// for people, in *error on failure. `--help` anywhere wins over every fault.
+bool options_parse(struct settings *out, struct gn_error *error, int argc, char **argv, uint32_t command, int positionals,
+                   const char *names);
 
 // Prints the options that `command` takes to standard output, those of every command last.
 void options_print(uint32_t command);

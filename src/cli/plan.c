@@ -7,10 +7,16 @@
 
 static json_t *as_json(const struct gn_effect *effects, uint32_t count) {
     json_t *list = json_array();
-    for (uint32_t i = 0; i < count; i++)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:o}", "name", effects[i].name, "state", effects[i].on ? "on" : "pruned",
-                                              "because", json_words(effects[i].because)));
-    return json_pack("{s:o}", "effects", list);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct json_member members[] = {
+            {"name", json_words(effects[i].name)},
+            {"state", json_words(effects[i].on ? "on" : "pruned")},
+            {"because", json_words(effects[i].because)},
+        };
+        json_array_append_new(list, JSON_MEMBERS(members));
+    }
+    const struct json_member members[] = {{"effects", list}};
+    return JSON_MEMBERS(members);
 }
 
 static void print(const struct gn_effect *effects, uint32_t count) {

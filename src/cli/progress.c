@@ -8,8 +8,8 @@
 
 #include "base/clock.h"
 
-#define BAR_MOST 40     // cells
-#define HEARTBEAT 2.0   // seconds for which a report without a fraction says no more than that the last one still holds
+#define BAR_MOST 40   // cells
+#define HEARTBEAT 2.0 // seconds for which a report without a fraction says no more than that the last one still holds
 
 static bool says_utf8(void) {
     static const char *const names[] = {"LC_ALL", "LC_CTYPE", "LANG"};
@@ -28,8 +28,10 @@ static bool on_terminal(void) {
 void progress_init(struct progress_view *view, enum progress_mode mode, bool quiet) {
     *view = (struct progress_view){.mode = mode, .started = clock_seconds(), .unicode = says_utf8()};
     if (mode == PROGRESS_AUTO) view->mode = quiet ? PROGRESS_NONE : on_terminal() ? PROGRESS_BAR : PROGRESS_PLAIN;
-    if (view->mode == PROGRESS_BAR) view->first = 0.2, view->interval = 0.05;
-    else view->first = 2, view->interval = mode == PROGRESS_AUTO ? 5 : 2;
+    if (view->mode == PROGRESS_BAR)
+        view->first = 0.2, view->interval = 0.05;
+    else
+        view->first = 2, view->interval = mode == PROGRESS_AUTO ? 5 : 2;
 }
 
 static int terminal_width(void) {
@@ -43,9 +45,12 @@ static void time_left(char *text, size_t capacity, double seconds) {
     text[0] = 0;
     if (!(seconds >= 0) || seconds > 1e7) return;
     long whole = (long)(seconds + 0.999);
-    if (whole < 60) snprintf(text, capacity, "%ld s left", whole);
-    else if (whole < 3600) snprintf(text, capacity, "%ld min %02ld s left", whole / 60, whole % 60);
-    else snprintf(text, capacity, "%ld h %02ld min left", whole / 3600, whole / 60 % 60);
+    if (whole < 60)
+        snprintf(text, capacity, "%ld s left", whole);
+    else if (whole < 3600)
+        snprintf(text, capacity, "%ld min %02ld s left", whole / 60, whole % 60);
+    else
+        snprintf(text, capacity, "%ld h %02ld min left", whole / 3600, whole / 60 % 60);
 }
 
 // A fraction that is not known draws no cells.
@@ -62,15 +67,19 @@ static void draw_bar(const struct progress_view *view, const char *stage, double
     cells[used] = 0;
     char line[sizeof head + sizeof tail];
     snprintf(line, sizeof line, "%s%s", head, tail);
-    if (width) fprintf(stderr, "\r\033[K%s %s%s", head, cells, tail);
-    else fprintf(stderr, "\r\033[K%.*s", terminal_width() - 1, line);
+    if (width)
+        fprintf(stderr, "\r\033[K%s %s%s", head, cells, tail);
+    else
+        fprintf(stderr, "\r\033[K%.*s", terminal_width() - 1, line);
 }
 
 void progress_show(struct progress_view *view, const struct gn_progress *progress) {
     if (view->mode == PROGRESS_NONE) return;
     double now = clock_seconds();
-    if (progress->fraction >= 0) view->known = now;
-    else if (now - view->known < HEARTBEAT) return;
+    if (progress->fraction >= 0)
+        view->known = now;
+    else if (now - view->known < HEARTBEAT)
+        return;
     if (now - view->started < view->first || now - view->last < view->interval) return;
     view->last = now;
     char left[48];
@@ -80,8 +89,10 @@ void progress_show(struct progress_view *view, const struct gn_progress *progres
         draw_bar(view, progress->stage, fraction, left);
         view->drawn = true;
     } else {
-        if (fraction >= 0) fprintf(stderr, "gnomon: %s %.0f %%%s%s\n", progress->stage, 100 * fraction, *left ? ", " : "", left);
-        else fprintf(stderr, "gnomon: %s …\n", progress->stage);
+        if (fraction >= 0)
+            fprintf(stderr, "gnomon: %s %.0f %%%s%s\n", progress->stage, 100 * fraction, *left ? ", " : "", left);
+        else
+            fprintf(stderr, "gnomon: %s …\n", progress->stage);
     }
 }
 

@@ -5,12 +5,12 @@
 #include "cli/options.h"
 
 struct progress_view {
-    enum progress_mode mode;    // never AUTO
-    bool unicode;               // the terminal takes it
-    bool drawn;                 // a bar stands on the current line
-    double started, last;       // clock_seconds() of the start and of the last drawing
-    double known;               // the same of the last report that knew its fraction
-    double first, interval;     // seconds before the first drawing, and between two
+    enum progress_mode mode; // never AUTO
+    bool unicode;            // the terminal takes it
+    bool drawn;              // a bar stands on the current line
+    double started, last;    // clock_seconds() of the start and of the last drawing
+    double known;            // the same of the last report that knew its fraction
+    double first, interval;  // seconds before the first drawing, and between two
 };
 
 // Chooses how to show progress: `mode` as asked for; `quiet` shows nothing.

@@ -7,20 +7,31 @@
 static json_t *as_json(const struct run *run, const struct gn_picture *picture, const struct gn_device *device, uint32_t spp,
                        const struct gn_time *time) {
     const struct gn_render_stats *stats = gn_picture_stats(picture);
-    return json_pack("{s:o, s:I, s:I, s:I, s:o, s:o, s:s, s:o, s:I, s:I, s:I, s:o, s:o}",
-                     "image", json_words(run->settings.output),
-                     "width", (json_int_t)gn_picture_width(picture), "height", (json_int_t)gn_picture_height(picture), "spp", (json_int_t)spp,
-                     "device", json_words(device_name(device)), "driver", json_words(device_driver(device)), "accuracy", stats->accuracy,
-                     "effects", json_names(stats->effects), "rays", (json_int_t)stats->rays,
-                     "nonfinite_pixels", (json_int_t)stats->nonfinite_pixels, "undecided_rays", (json_int_t)stats->undecided_rays,
-                     "time_ms", json_times(time, true), "mrays_per_s", json_number(stats->mrays_per_s));
+    const struct json_member members[] = {
+        {"image", json_words(run->settings.output)},
+        {"width", json_integer(gn_picture_width(picture))},
+        {"height", json_integer(gn_picture_height(picture))},
+        {"spp", json_integer(spp)},
+        {"device", json_words(device_name(device))},
+        {"driver", json_words(device_driver(device))},
+        {"accuracy", json_words(stats->accuracy)},
+        {"effects", json_names(stats->effects)},
+        {"rays", json_integer((json_int_t)stats->rays)},
+        {"nonfinite_pixels", json_integer((json_int_t)stats->nonfinite_pixels)},
+        {"undecided_rays", json_integer((json_int_t)stats->undecided_rays)},
+        {"time_ms", json_times(time, true)},
+        {"mrays_per_s", json_number(stats->mrays_per_s)},
+    };
+    return JSON_MEMBERS(members);
 }
 
-static void tell(struct run *run, const struct gn_picture *picture, const struct gn_device *device, uint32_t spp, const struct gn_time *time) {
+static void tell(struct run *run, const struct gn_picture *picture, const struct gn_device *device, uint32_t spp,
+                 const struct gn_time *time) {
     const struct gn_render_stats *stats = gn_picture_stats(picture);
     run_say(run, "%s: %" PRIu32 " × %" PRIu32 " pixels, %" PRIu32 " sample%s each; %s, %s", run->settings.output, gn_picture_width(picture),
             gn_picture_height(picture), spp, spp == 1 ? "" : "s", stats->accuracy, device_name(device));
-    run_say(run, "%.3g million rays at %.3g million a second; %.2f s in all", 1e-6 * (double)stats->rays, stats->mrays_per_s, 1e-3 * time->total);
+    run_say(run, "%.3g million rays at %.3g million a second; %.2f s in all", 1e-6 * (double)stats->rays, stats->mrays_per_s,
+            1e-3 * time->total);
     if (!run->settings.stats) return;
     say_times(run, time, true);
     run_say(run, "  rays       %12" PRIu64, stats->rays);

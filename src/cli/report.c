@@ -5,9 +5,12 @@ const char *device_name(const struct gn_device *device) { return device ? gn_dev
 const char *device_driver(const struct gn_device *device) { return device ? gn_device_info(device)->driver : "none"; }
 
 json_t *json_times(const struct gn_time *time, bool output) {
-    json_t *times = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "total", json_ms(time->total), "startup", json_ms(time->startup),
-                              "scene", json_ms(time->scene), "bvh", json_ms(time->bvh), "pipeline", json_ms(time->pipeline),
-                              "upload", json_ms(time->upload), "trace", json_ms(time->trace));
+    const struct json_member members[] = {
+        {"total", json_ms(time->total)}, {"startup", json_ms(time->startup)},   {"scene", json_ms(time->scene)},
+        {"bvh", json_ms(time->bvh)},     {"pipeline", json_ms(time->pipeline)}, {"upload", json_ms(time->upload)},
+        {"trace", json_ms(time->trace)},
+    };
+    json_t *times = JSON_MEMBERS(members);
     if (times && output) json_object_set_new(times, "output", json_ms(time->output));
     return times;
 }

@@ -31,6 +31,20 @@ static bool write_batch(const struct batch *batch, struct run *run) {
     return written;
 }
 
+static json_t *as_json(const struct gn_trace_stats *stats, const struct gn_device *device, const struct gn_time *time) {
+    const struct json_member members[] = {
+        {"rays", json_integer((json_int_t)stats->rays)},
+        {"hits", json_integer((json_int_t)stats->hits)},
+        {"accuracy", json_words(stats->accuracy)},
+        {"undecided_rays", json_integer((json_int_t)stats->undecided_rays)},
+        {"device", json_words(device_name(device))},
+        {"driver", json_words(device_driver(device))},
+        {"time_ms", json_times(time, false)},
+        {"mrays_per_s", json_number(stats->mrays_per_s)},
+    };
+    return JSON_MEMBERS(members);
+}
+
 static bool report(struct run *run, const struct gn_trace_stats *stats, const struct gn_device *device) {
     struct gn_time time = stats->time_ms;
     time.total = run_ms(run);
@@ -41,11 +55,7 @@ static bool report(struct run *run, const struct gn_trace_stats *stats, const st
         say_times(run, &time, false);
         run_say(run, "  undecided  %12" PRIu64 "  that needed more than the tier's first stage", stats->undecided_rays);
     }
-    if (!run->settings.json) return true;
-    return run_result(run, json_pack("{s:I, s:I, s:s, s:I, s:o, s:o, s:o, s:o}", "rays", (json_int_t)stats->rays, "hits",
-                                     (json_int_t)stats->hits, "accuracy", stats->accuracy, "undecided_rays", (json_int_t)stats->undecided_rays,
-                                     "device", json_words(device_name(device)), "driver", json_words(device_driver(device)),
-                                     "time_ms", json_times(&time, false), "mrays_per_s", json_number(stats->mrays_per_s)));
+    return !run->settings.json || run_result(run, as_json(stats, device, &time));
 }
 
 bool command_trace(struct run *run) {

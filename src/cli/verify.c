@@ -5,23 +5,39 @@
 #include "cli/report.h"
 
 static json_t *as_json(const struct run *run, const struct gn_verify_result *result, const struct gn_device *device) {
-    return json_pack("{s:b, s:I, s:I, s:o, s:o, s:I, s:I, s:I, s:I, s:o, s:I, s:I, s:o, s:o, s:s, s:{s:o, s:o, s:o}}",
-                     "pass", result->pass, "pixels", (json_int_t)result->pixels, "pixels_differing", (json_int_t)result->pixels_differing,
-                     "max_abs", json_number(result->max_abs), "rmse", json_number(result->rmse), "wrong_hits", (json_int_t)result->wrong_hits,
-                     "ties", (json_int_t)result->ties,
-                     "nonfinite_pixels", (json_int_t)result->nonfinite_pixels, "pixels_allowed", (json_int_t)result->pixels_allowed,
-                     "tolerance", json_number(result->tolerance),
-                     "worst_x", (json_int_t)result->worst_x, "worst_y", (json_int_t)result->worst_y,
-                     "device", json_words(device_name(device)), "driver", json_words(device_driver(device)), "accuracy", result->device.accuracy,
-                     "time_ms", "total", json_ms(run_ms(run)), "device", json_ms(result->device.time_ms.trace),
-                     "reference", json_ms(result->reference.time_ms.trace));
+    const struct json_member times[] = {
+        {"total", json_ms(run_ms(run))},
+        {"device", json_ms(result->device.time_ms.trace)},
+        {"reference", json_ms(result->reference.time_ms.trace)},
+    };
+    const struct json_member members[] = {
+        {"pass", json_boolean(result->pass)},
+        {"pixels", json_integer((json_int_t)result->pixels)},
+        {"pixels_differing", json_integer((json_int_t)result->pixels_differing)},
+        {"max_abs", json_number(result->max_abs)},
+        {"rmse", json_number(result->rmse)},
+        {"wrong_hits", json_integer((json_int_t)result->wrong_hits)},
+        {"ties", json_integer((json_int_t)result->ties)},
+        {"nonfinite_pixels", json_integer((json_int_t)result->nonfinite_pixels)},
+        {"pixels_allowed", json_integer((json_int_t)result->pixels_allowed)},
+        {"tolerance", json_number(result->tolerance)},
+        {"worst_x", json_integer(result->worst_x)},
+        {"worst_y", json_integer(result->worst_y)},
+        {"device", json_words(device_name(device))},
+        {"driver", json_words(device_driver(device))},
+        {"accuracy", json_words(result->device.accuracy)},
+        {"time_ms", JSON_MEMBERS(times)},
+    };
+    return JSON_MEMBERS(members);
 }
 
 static bool judge(struct run *run, const struct gn_verify_result *result) {
     char counts[256];
-    snprintf(counts, sizeof counts, "of %" PRIu64 " pixels %" PRIu64 " differ by more than %.3g, %" PRIu64 " hit something elsewhere (%" PRIu64
-             " of each may), %" PRIu64 " are ties, %" PRIu64 " not finite", result->pixels, result->pixels_differing, result->tolerance,
-             result->wrong_hits - result->ties, result->pixels_allowed, result->ties, result->nonfinite_pixels);
+    snprintf(counts, sizeof counts,
+             "of %" PRIu64 " pixels %" PRIu64 " differ by more than %.3g, %" PRIu64 " hit something elsewhere (%" PRIu64
+             " of each may), %" PRIu64 " are ties, %" PRIu64 " not finite",
+             result->pixels, result->pixels_differing, result->tolerance, result->wrong_hits - result->ties, result->pixels_allowed,
+             result->ties, result->nonfinite_pixels);
     if (!result->pass)
         return run_fail(run, GN_CHECK_FAILED, "not the same: %s; largest difference %.3g at (%" PRIu32 ", %" PRIu32 "), RMSE %.3g", counts,
                         result->max_abs, result->worst_x, result->worst_y, result->rmse);

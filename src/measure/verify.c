@@ -9,13 +9,15 @@ uint64_t verify_allowed(uint64_t pixels) {
 }
 
 struct pixel_error {
-    double worst;               // over the channels, absolute
-    double squares;             // summed over the channels
-    double limits;              // worst, in units of the limit that holds at its value; +inf if something is not finite
+    double worst;   // over the channels, absolute
+    double squares; // summed over the channels
+    double limits;  // worst, in units of the limit that holds at its value; +inf if something is not finite
 };
 
 // What a channel may be off where this is its right value.
-static double limit_at(double right, double tolerance) { return fabs(right) > 1 ? fmax(tolerance, VERIFY_RELATIVE * fabs(right)) : tolerance; }
+static double limit_at(double right, double tolerance) {
+    return fabs(right) > 1 ? fmax(tolerance, VERIFY_RELATIVE * fabs(right)) : tolerance;
+}
 
 static struct pixel_error pixel_error(const float *device, const float *reference, double tolerance) {
     struct pixel_error error = {0};
@@ -64,6 +66,7 @@ bool verify_pictures(struct gn_verify_result *out, struct image *difference, str
     out->pixels = (uint64_t)width * height;
     out->pixels_allowed = verify_allowed(out->pixels);
     out->rmse = sqrt(squares / (3 * (double)out->pixels));
-    out->pass = out->pixels_differing <= out->pixels_allowed && out->wrong_hits - out->ties <= out->pixels_allowed && out->nonfinite_pixels == 0;
+    out->pass =
+        out->pixels_differing <= out->pixels_allowed && out->wrong_hits - out->ties <= out->pixels_allowed && out->nonfinite_pixels == 0;
     return true;
 }
