@@ -31,7 +31,7 @@ real2 sphere_fast(real3 o, real3 d, real3 center, real radius) {
 }
 
 // The start of a ray that leaves p along the side of n (unit): a fixed share of the scene's size, which is 1 to 2 in device units.
-real3 leave_fast(real3 p, real3 n) { return p + n * 1e-4; }
+real3 leave_fast(real3 p, real3 n) { return p + n * 4e-6; }
 
 real3 normalize_fast(real3 v) { return v * inversesqrt(dot(v, v)); }
 
