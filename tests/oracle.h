@@ -1,8 +1,9 @@
-// What right-answer.md says, word for word, in GMP integers and MPFR numbers of 8192 bits: the judge of the judge. Slow, and shares nothing with src/.
+// What right-answer.md says, word for word, in GMP integers and MPFR numbers of 8192 bits: the judge of the judge. Slow, and shares nothing
+// with src/.
 //
-// Numbers enter times 2^300, which makes integers of them; all expressions are homogeneous, so that the factor cancels in t, u and v. Roots are MPFR's:
-// two different t are further apart than 2^-4400 of their terms (their norm is a whole number of inputs of at most 440 bits, degree 10), so a difference
-// below 2^-6000 is none.
+// Numbers enter times 2^300, which makes integers of them; all expressions are homogeneous, so that the factor cancels in t, u and v. Roots
+// are MPFR's: two different t are further apart than 2^-4400 of their terms (their norm is a whole number of inputs of at most 440 bits,
+// degree 10), so a difference below 2^-6000 is none.
 #ifndef TESTS_ORACLE_H
 #define TESTS_ORACLE_H
 
@@ -16,12 +17,19 @@
 #define ORACLE_BITS 8192
 #define ORACLE_SCALE 300
 
-struct oracle_ray { double o[3], d[3], tmin, tmax; };
+struct oracle_ray {
+    double o[3], d[3], tmin, tmax;
+};
 
 // A real number, and the size of what it is the difference of.
-struct oracle_number { mpfr_t value, magnitude; };
+struct oracle_number {
+    mpfr_t value, magnitude;
+};
 
-struct oracle_hit { bool hit; struct oracle_number t, u, v; };
+struct oracle_hit {
+    bool hit;
+    struct oracle_number t, u, v;
+};
 
 static inline void oracle_number_init(struct oracle_number *x) {
     mpfr_inits2(ORACLE_BITS, x->value, x->magnitude, (mpfr_ptr)0);
@@ -76,8 +84,10 @@ static inline void oracle_set(mpz_t out, double x) {
     int exponent;
     mpz_set_d(out, ldexp(frexp(x, &exponent), 53));
     exponent += ORACLE_SCALE - 53;
-    if (exponent >= 0) mpz_mul_2exp(out, out, (unsigned long)exponent);
-    else mpz_tdiv_q_2exp(out, out, (unsigned long)-exponent);
+    if (exponent >= 0)
+        mpz_mul_2exp(out, out, (unsigned long)exponent);
+    else
+        mpz_tdiv_q_2exp(out, out, (unsigned long)-exponent);
 }
 
 static inline void oracle_cross(oracle_vec out, const oracle_vec a, const oracle_vec b) {
@@ -179,8 +189,10 @@ static inline void oracle_root(struct oracle_number *out, const mpz_t a, const m
     mpfr_set_z(root, f, MPFR_RNDN);
     mpfr_sqrt(root, root, MPFR_RNDN);
     mpfr_set_z(x, b, MPFR_RNDN);
-    if (sign > 0) mpfr_add(out->value, x, root, MPFR_RNDN);
-    else mpfr_sub(out->value, x, root, MPFR_RNDN);
+    if (sign > 0)
+        mpfr_add(out->value, x, root, MPFR_RNDN);
+    else
+        mpfr_sub(out->value, x, root, MPFR_RNDN);
     mpfr_abs(x, x, MPFR_RNDN);
     mpfr_add(out->magnitude, x, root, MPFR_RNDN);
     mpfr_set_z(x, a, MPFR_RNDN);

@@ -44,11 +44,13 @@ static void check_equal(const struct exact *a, const mpz_t expected) {
 
 // A double of the domain: few or many bits, any exponent, or an edge of the domain.
 static double random_number(uint64_t *state) {
-    static const double edges[] = {0, 1, -1, 0x1p-233, -0x1p-233, 0x1.fffffffffffffp130, -0x1.fffffffffffffp130, 0x1p130, 0x1p-149, 0x1.fffffep127};
+    static const double edges[] = {
+        0, 1, -1, 0x1p-233, -0x1p-233, 0x1.fffffffffffffp130, -0x1.fffffffffffffp130, 0x1p130, 0x1p-149, 0x1.fffffep127};
     uint32_t kind = oracle_random(state) % 4;
     if (kind == 0) return edges[oracle_random(state) % (sizeof edges / sizeof edges[0])];
     int exponent = (int)(oracle_random(state) % 300) - 176;
-    double x = kind == 1 ? (double)(oracle_random(state) % 16) : (double)oracle_random(state) * 0x1p-31 + (double)oracle_random(state) * 0x1p-52;
+    double x =
+        kind == 1 ? (double)(oracle_random(state) % 16) : (double)oracle_random(state) * 0x1p-31 + (double)oracle_random(state) * 0x1p-52;
     if (kind == 3) exponent = (int)(oracle_random(state) % 4);
     x = ldexp(x, exponent - 4);
     return oracle_random(state) % 2 ? x : -x;
@@ -73,7 +75,7 @@ static void test_operations(void **unused) {
         exact_mul(&c, &a, &b), multiply_gmp(z, x, y);
         check_equal(&c, z);
         assert_int_equal(exact_compare(&a, &b), (p > q) - (p < q));
-        exact_sub(&a, &a, &b), mpz_sub(x, x, y);    // in place
+        exact_sub(&a, &a, &b), mpz_sub(x, x, y); // in place
         check_equal(&a, x);
         exact_mul(&a, &a, &a), multiply_gmp(x, x, x);
         check_equal(&a, x);
@@ -110,9 +112,15 @@ static void test_longest(void **unused) {
 
 static void test_holds(void **unused) {
     (void)unused;
-    static const struct { double x; bool holds; } cases[] = {
-        {0, true}, {0x1p-149, true}, {0x1p-150, true}, {0x1p128, true}, {0x1p-233, true}, {0x1.8p-233, false}, {0x1.1p-230, false}, {0x1p-234, false},
-        {0x1.fffffffffffffp130, true}, {0x1p131, false}, {-0x1p131, false}, {0x1p-1074, false}, {INFINITY, false}, {-INFINITY, false}, {NAN, false},
+    static const struct {
+        double x;
+        bool holds;
+    } cases[] = {
+        {0, true},           {0x1p-149, true},   {0x1p-150, true},
+        {0x1p128, true},     {0x1p-233, true},   {0x1.8p-233, false},
+        {0x1.1p-230, false}, {0x1p-234, false},  {0x1.fffffffffffffp130, true},
+        {0x1p131, false},    {-0x1p131, false},  {0x1p-1074, false},
+        {INFINITY, false},   {-INFINITY, false}, {NAN, false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) assert_int_equal(exact_holds(cases[i].x), cases[i].holds);
 }
@@ -144,18 +152,23 @@ static void test_interval(void **unused) {
     mpfr_clears(exact, lo, hi, (mpfr_ptr)0);
 }
 
-// (p + root·√f) / m to the nearest fp32, from a bracket that says nothing; among them ties, overflow, and numbers below the smallest denormal.
+// (p + root·√f) / m to the nearest fp32, from a bracket that says nothing; among them ties, overflow, and numbers below the smallest
+// denormal.
 static void test_rounding(void **unused) {
     (void)unused;
-    static const struct { double p, m, f; int root; float expected; } cases[] = {
+    static const struct {
+        double p, m, f;
+        int root;
+        float expected;
+    } cases[] = {
         {1, 3, 0, 0, 1.0f / 3.0f},
-        {0x1.000001p0, 1, 0, 0, 1},                                 // half-way: to even
+        {0x1.000001p0, 1, 0, 0, 1}, // half-way: to even
         {0x1.000003p0, 1, 0, 0, 0x1.000004p0f},
-        {0x1.0000010000001p0, 1, 0, 0, 0x1.000002p0f},              // just above
-        {0x1.0000010000001p0, 0x1.0000000000001p0, 0, 0, 1},        // just below
+        {0x1.0000010000001p0, 1, 0, 0, 0x1.000002p0f},       // just above
+        {0x1.0000010000001p0, 0x1.0000000000001p0, 0, 0, 1}, // just below
         {-0x1.000003p0, 1, 0, 0, -0x1.000004p0f},
         {0x1.fffffep127, 1, 0, 0, 0x1.fffffep127f},
-        {0x1.ffffffp127, 1, 0, 0, INFINITY},                        // half-way to 2^128
+        {0x1.ffffffp127, 1, 0, 0, INFINITY}, // half-way to 2^128
         {0x1.fffffefffffffp127, 1, 0, 0, 0x1.fffffep127f},
         {-0x1p130, 0x1p-100, 0, 0, -INFINITY},
         {0x1p-150, 1, 0, 0, 0},
@@ -167,7 +180,7 @@ static void test_rounding(void **unused) {
         {0, 1, 2, -1, -1.41421356237309504880f},
         {3, 1, 9, -1, 0},
         {1, 2, 5, 1, 1.61803398874989484820f},
-        {0x1p24, 1, 0x1p48 - 1, -1, 0x1p-25f},                      // 2^24 - √(2^48-1), a little more than 2^-25
+        {0x1p24, 1, 0x1p48 - 1, -1, 0x1p-25f}, // 2^24 - √(2^48-1), a little more than 2^-25
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct fraction fraction = {.root = cases[i].root};

@@ -1,5 +1,5 @@
-// Every decision about one ray and one or two primitives, against the oracle: the hard cases, fuzzed by a few ulp, scaled, permuted, and lattices on which
-// ties are the rule. t, u and v must be the nearest fp32. None may be wrong; plain fp64, the negative control, must be.
+// Every decision about one ray and one or two primitives, against the oracle: the hard cases, fuzzed by a few ulp, scaled, permuted, and
+// lattices on which ties are the rule. t, u and v must be the nearest fp32. None may be wrong; plain fp64, the negative control, must be.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,11 +11,19 @@
 
 #include <cmocka.h>
 
-struct ray_triangle { struct gn_ray ray; float v[3][3]; };
-struct ray_sphere { struct gn_ray ray; float center[3], radius; };
+struct ray_triangle {
+    struct gn_ray ray;
+    float v[3][3];
+};
+struct ray_sphere {
+    struct gn_ray ray;
+    float center[3], radius;
+};
 
 // Decisions made so far.
-struct tally { unsigned cases, hits, undecided, wrong, control_wrong; };
+struct tally {
+    unsigned cases, hits, undecided, wrong, control_wrong;
+};
 
 // ------------------------------------------------------------------------------------------------------------------ helpers
 
@@ -92,18 +100,19 @@ static bool control_sphere(const struct ref_ray *ray, const float center[3], flo
 
 static void count_wrong(struct tally *tally, const struct ref_ray *ray, const char *what, double found, double expected) {
     if (tally->wrong++ < 5) {
-        print_message("o %a %a %a d %a %a %a (%g, %g): %s %a, expected %a\n", ray->o[0], ray->o[1], ray->o[2], ray->d[0], ray->d[1], ray->d[2],
-                      ray->tmin, ray->tmax, what, found, expected);
+        print_message("o %a %a %a d %a %a %a (%g, %g): %s %a, expected %a\n", ray->o[0], ray->o[1], ray->o[2], ray->d[0], ray->d[1],
+                      ray->d[2], ray->tmin, ray->tmax, what, found, expected);
     }
 }
 
-static void compare_number(struct tally *tally, const struct ref_ray *ray, const char *what, float found, const struct oracle_number *expected) {
+static void compare_number(struct tally *tally, const struct ref_ray *ray, const char *what, float found,
+                           const struct oracle_number *expected) {
     float right = oracle_round(expected);
     if (found != right) count_wrong(tally, ray, what, (double)found, (double)right);
 }
 
-static void compare_hit(struct tally *tally, const struct ref_ray *ray, bool hit, const struct crossing *crossing, const struct oracle_hit *expected,
-                        bool control) {
+static void compare_hit(struct tally *tally, const struct ref_ray *ray, bool hit, const struct crossing *crossing,
+                        const struct oracle_hit *expected, bool control) {
     tally->cases++;
     tally->hits += expected->hit;
     tally->undecided += ray->undecided > 0;
@@ -214,7 +223,8 @@ static void needle(struct ray_triangle *c, uint64_t *state) { // T08
 
 static void collinear(struct ray_triangle *c, uint64_t *state) { // T09
     (void)state;
-    set_vertices(c, (float[]){-1113.45459f, -79.049614f, -56.2431908f, -1113.45459f, -87.0922699f, -56.2431908f, -1113.45459f, -79.2090149f, -56.2431908f});
+    set_vertices(c, (float[]){-1113.45459f, -79.049614f, -56.2431908f, -1113.45459f, -87.0922699f, -56.2431908f, -1113.45459f, -79.2090149f,
+                              -56.2431908f});
     c->ray = ray_make(-1081.47925f, 99.9999542f, 87.7701111f, -32.1072998f, -183.355865f, -144.607635f);
 }
 
@@ -248,8 +258,10 @@ static void grazing(struct ray_triangle *c, uint64_t *state) { // T20
 
 static void far_away(struct ray_triangle *c, uint64_t *state) { // T21, T22
     set_vertices(c, (float[]){0, 0, 0, 1, 0, 0, 0, 1, 0});
-    if (oracle_random(state) % 2) c->ray = ray_make(between(state, 0, 1), between(state, 0, 1), 1e7f, 0, 0, -1);
-    else c->ray = ray_make(1e7f + whole(state, 2), 0.3f, 1e7f, -1, 0, -1);
+    if (oracle_random(state) % 2)
+        c->ray = ray_make(between(state, 0, 1), between(state, 0, 1), 1e7f, 0, 0, -1);
+    else
+        c->ray = ray_make(1e7f + whole(state, 2), 0.3f, 1e7f, -1, 0, -1);
 }
 
 static void lattice(struct ray_triangle *c, uint64_t *state) { // most edge functions are 0
@@ -279,10 +291,10 @@ static const struct {
     unsigned count;
     unsigned least_hits;
 } triangle_families[] = {
-    {"T01 diagonal", diagonal, 3000, 100},   {"T02 vertex", vertex_aimed, 3000, 100},  {"T03 edge", edge_aimed, 3000, 100},
-    {"T04 midpoint", grid_midpoint, 3000, 100}, {"T08 needle", needle, 3000, 100},     {"T09 collinear", collinear, 500, 0},
-    {"T11 degenerate", degenerate, 1500, 0}, {"T12 T15 T17 scaled", scaled, 3000, 100}, {"T18 T19 in plane", in_plane, 1000, 50},
-    {"T20 grazing", grazing, 1500, 100},     {"T21 T22 far", far_away, 1500, 100},     {"lattice", lattice, 12000, 200},
+    {"T01 diagonal", diagonal, 3000, 100},      {"T02 vertex", vertex_aimed, 3000, 100},   {"T03 edge", edge_aimed, 3000, 100},
+    {"T04 midpoint", grid_midpoint, 3000, 100}, {"T08 needle", needle, 3000, 100},         {"T09 collinear", collinear, 500, 0},
+    {"T11 degenerate", degenerate, 1500, 0},    {"T12 T15 T17 scaled", scaled, 3000, 100}, {"T18 T19 in plane", in_plane, 1000, 50},
+    {"T20 grazing", grazing, 1500, 100},        {"T21 T22 far", far_away, 1500, 100},      {"lattice", lattice, 12000, 200},
     {"any bits", any_bits, 4000, 50},
 };
 
@@ -314,8 +326,8 @@ static void test_triangles(void **unused) {
             if (i % 3 > 1) fuzz(&state, c.v[0], 9), fuzz(&state, c.ray.origin, 3), fuzz(&state, c.ray.direction, 3);
             check_triangle(&tally, &c);
         }
-        print_message("%-20s %6u cases %6u hits %6u undecided %u wrong; plain fp64 %u wrong\n", triangle_families[f].name, tally.cases, tally.hits,
-                      tally.undecided, tally.wrong, tally.control_wrong);
+        print_message("%-20s %6u cases %6u hits %6u undecided %u wrong; plain fp64 %u wrong\n", triangle_families[f].name, tally.cases,
+                      tally.hits, tally.undecided, tally.wrong, tally.control_wrong);
         assert_true(tally.hits >= triangle_families[f].least_hits);
         all.wrong += tally.wrong;
         all.control_wrong += tally.control_wrong;
@@ -335,8 +347,11 @@ struct known_triangle {
 static void test_known_triangles(void **unused) {
     (void)unused;
     static const struct known_triangle cases[] = {
-        {"T09", {{-1081.47925f, 99.9999542f, 87.7701111f}, 0, {-32.1072998f, -183.355865f, -144.607635f}, INFINITY},
-         {-1113.45459f, -79.049614f, -56.2431908f, -1113.45459f, -87.0922699f, -56.2431908f, -1113.45459f, -79.2090149f, -56.2431908f}, false, 0},
+        {"T09",
+         {{-1081.47925f, 99.9999542f, 87.7701111f}, 0, {-32.1072998f, -183.355865f, -144.607635f}, INFINITY},
+         {-1113.45459f, -79.049614f, -56.2431908f, -1113.45459f, -87.0922699f, -56.2431908f, -1113.45459f, -79.2090149f, -56.2431908f},
+         false,
+         0},
         {"T18", {{0.25f, 0.25f, 0}, 0, {0, 0, -1}, INFINITY}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, false, 0},
         {"T19", {{-1, 0.25f, 0}, 0, {1, 0, 0}, INFINITY}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, false, 0},
         {"T20", {{-1, 0.25f, 1e-6f}, 0, {1, 0, -1e-6f}, INFINITY}, {-1, -1, 0, 1, 0, 0, 0, 1, 0}, true, 1},
@@ -405,7 +420,8 @@ static void test_fan(void **unused) {
     assert_int_equal(tally.wrong, 0);
 }
 
-// T07: the common edge of a sliver and a triangle, met exactly. (By these bits the third vertices are on different sides: x+y is 1 + 2^-24 and 0.99.)
+// T07: the common edge of a sliver and a triangle, met exactly. (By these bits the third vertices are on different sides: x+y is 1 + 2^-24
+// and 0.99.)
 static void test_sliver(void **unused) {
     (void)unused;
     static const uint32_t bits[2][9] = {
@@ -518,8 +534,9 @@ static const struct {
     void (*make)(struct ray_sphere *c, uint64_t *state);
     unsigned count, least_hits;
 } sphere_families[] = {
-    {"S01-S03 silhouette", silhouette, 3000, 500}, {"S05 S08 S15 tangent", tangent, 2000, 200}, {"S07-S09 on surface", on_surface, 2000, 200},
-    {"S10 scaled", scaled_sphere, 2000, 200},      {"lattice", lattice_sphere, 6000, 500},      {"any bits", any_sphere, 2000, 50},
+    {"S01-S03 silhouette", silhouette, 3000, 500}, {"S05 S08 S15 tangent", tangent, 2000, 200},
+    {"S07-S09 on surface", on_surface, 2000, 200}, {"S10 scaled", scaled_sphere, 2000, 200},
+    {"lattice", lattice_sphere, 6000, 500},        {"any bits", any_sphere, 2000, 50},
 };
 
 static void test_spheres(void **unused) {
@@ -534,8 +551,8 @@ static void test_spheres(void **unused) {
             if (i % 2) fuzz(&state, c.ray.origin, 3), fuzz(&state, c.ray.direction, 3), fuzz(&state, &c.radius, 1);
             check_sphere(&tally, &c);
         }
-        print_message("%-20s %6u cases %6u hits %6u undecided %u wrong; plain fp64 %u wrong\n", sphere_families[f].name, tally.cases, tally.hits,
-                      tally.undecided, tally.wrong, tally.control_wrong);
+        print_message("%-20s %6u cases %6u hits %6u undecided %u wrong; plain fp64 %u wrong\n", sphere_families[f].name, tally.cases,
+                      tally.hits, tally.undecided, tally.wrong, tally.control_wrong);
         assert_true(tally.hits >= sphere_families[f].least_hits);
         all.wrong += tally.wrong;
         all.control_wrong += tally.control_wrong;
@@ -546,7 +563,12 @@ static void test_spheres(void **unused) {
 
 static void test_known_spheres(void **unused) {
     (void)unused;
-    static const struct { const char *name; struct ray_sphere c; bool hit; float t; } cases[] = {
+    static const struct {
+        const char *name;
+        struct ray_sphere c;
+        bool hit;
+        float t;
+    } cases[] = {
         {"S04", {{{0, 0, 8192}, 0, {0, 0, -1}, INFINITY}, {0, 0, 0}, 1}, true, 8191},
         {"S05", {{{1, 0, -5}, 0, {0, 0, 1}, INFINITY}, {0, 0, 0}, 1}, true, 5},
         {"S07", {{{1, 0, 0}, 0, {1, 0, 0}, INFINITY}, {0, 0, 0}, 1}, false, 0},
@@ -573,13 +595,18 @@ static void test_known_spheres(void **unused) {
 
 // ------------------------------------------------------------------------------------------------------------ which is first
 
-struct candidate { float v[3][3], center[3], radius; bool is_sphere; };
+struct candidate {
+    float v[3][3], center[3], radius;
+    bool is_sphere;
+};
 
 static bool cross_candidate(struct crossing *crossing, struct oracle_hit *expected, struct ref_ray *ray, const struct candidate *c) {
     struct oracle_ray oracle = oracle_ray_of(ray);
     const float *const v[3] = {c->v[0], c->v[1], c->v[2]};
-    if (c->is_sphere) oracle_sphere(expected, &oracle, c->center, c->radius);
-    else oracle_triangle(expected, &oracle, v);
+    if (c->is_sphere)
+        oracle_sphere(expected, &oracle, c->center, c->radius);
+    else
+        oracle_triangle(expected, &oracle, v);
     bool hit = c->is_sphere ? sphere_cross(crossing, ray, c->center, c->radius) : triangle_cross(crossing, ray, v);
     assert_int_equal(hit, expected->hit);
     return hit;
@@ -615,7 +642,8 @@ static void test_order(void **unused) {
         struct ref_ray ray;
         struct crossing crossing[2];
         if (!ref_ray_make(&ray, &from)) continue;
-        if (!cross_candidate(&crossing[0], &expected[0], &ray, &c[0]) || !cross_candidate(&crossing[1], &expected[1], &ray, &c[1])) continue;
+        if (!cross_candidate(&crossing[0], &expected[0], &ray, &c[0]) || !cross_candidate(&crossing[1], &expected[1], &ray, &c[1]))
+            continue;
         uint32_t before = ray.undecided;
         int order = oracle_compare(&expected[0].t, &expected[1].t);
         int found = crossing_compare(&ray, &crossing[0], &crossing[1]);
@@ -630,7 +658,58 @@ static void test_order(void **unused) {
     assert_int_equal(wrong, 0);
 }
 
-// Sphere against triangle and sphere where t differs by less than fp64 tells: a sphere that a plane almost touches where the ray meets both.
+// Ties among numbers of full length, which fp64 rounds differently: a triangle and a part of it, a sphere and the same with its centre
+// turned about the ray.
+static void make_twins(struct candidate c[2], struct gn_ray *ray, uint64_t *state) {
+    memset(c, 0, 2 * sizeof *c);
+    *ray = ray_make(0, 0, 0, between(state, 1, 2), 0, 0);
+    if (oracle_random(state) % 2) {
+        ray->direction[1] = ray->direction[2] = ray->direction[0];
+        c[0].is_sphere = c[1].is_sphere = true;
+        for (int i = 0; i < 3; i++) c[0].center[i] = ldexpf(between(state, 1, 8), -(int)(oracle_random(state) % 12));
+        const float *p = c[0].center;
+        bool graze = oracle_random(state) % 2, near = graze || oracle_random(state) % 2; // the ray starts near the surface; along it
+        if (graze) c[0].center[2] = -(p[0] + p[1]) * between(state, 1 - 1e-3, 1 + 1e-3);
+        float distance = (float)sqrt((double)p[0] * p[0] + (double)p[1] * p[1] + (double)p[2] * p[2]);
+        c[0].radius = c[1].radius = near ? distance * between(state, 1 - 1e-5, 1 + 1e-5) : distance * between(state, 0.8, 0.9);
+        for (int i = 0; i < 3; i++) c[1].center[i] = c[0].center[(i + 1) % 3];
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        ray->origin[i] = between(state, -1, 1);
+        ray->direction[i] = between(state, -1, 1);
+        for (int k = 0; k < 3; k++) c[0].v[k][i] = (float)((int)(oracle_random(state) % (1u << 24)) - (1 << 23)) * 0x1p-20f;
+        for (int k = 0; k < 3; k++) c[1].v[k][i] = 0.5f * (c[0].v[k][i] + c[0].v[1][i]);
+    }
+}
+
+static void test_twins(void **unused) {
+    (void)unused;
+    uint64_t state = 350;
+    unsigned pairs = 0, wrong = 0;
+    struct oracle_hit expected[2];
+    oracle_hit_init(&expected[0]), oracle_hit_init(&expected[1]);
+    for (int i = 0; i < 20000; i++) {
+        struct candidate c[2];
+        struct gn_ray from;
+        struct ref_ray ray;
+        struct crossing crossing[2];
+        make_twins(c, &from, &state);
+        assert_true(ref_ray_make(&ray, &from));
+        if (!cross_candidate(&crossing[1], &expected[1], &ray, &c[1]) || !cross_candidate(&crossing[0], &expected[0], &ray, &c[0]))
+            continue;
+        assert_int_equal(oracle_compare(&expected[0].t, &expected[1].t), 0);
+        pairs++;
+        wrong += crossing_compare(&ray, &crossing[0], &crossing[1]) != 0;
+    }
+    oracle_hit_clear(&expected[0]), oracle_hit_clear(&expected[1]);
+    print_message("%u ties, %u wrong\n", pairs, wrong);
+    assert_true(pairs > 1000);
+    assert_int_equal(wrong, 0);
+}
+
+// Sphere against triangle and sphere where t differs by less than fp64 tells: a sphere that a plane almost touches where the ray meets
+// both.
 static void test_near_ties(void **unused) {
     (void)unused;
     uint64_t state = 400;
@@ -640,9 +719,13 @@ static void test_near_ties(void **unused) {
     for (int i = 0; i < 2000; i++) {
         // The plane z = tiny against the sphere of radius r around (0,0,-r): both at the distance of the origin to 1e-20 or so.
         float tiny = whole(&state, 2) * 0x1p-70f, r = between(&state, 1, 2);
-        struct candidate c[2] = {{.v = {{-9, -9, tiny}, {9, -9, tiny}, {0, 9, tiny}}}, {.is_sphere = true, .center = {0, 0, -r}, .radius = r}};
+        struct candidate c[2] = {{.v = {{-9, -9, tiny}, {9, -9, tiny}, {0, 9, tiny}}},
+                                 {.is_sphere = true, .center = {0, 0, -r}, .radius = r}};
         if (i % 2) c[0] = (struct candidate){.is_sphere = true, .center = {0, 0, tiny - 1}, .radius = 1};
-        struct gn_ray from = {{whole(&state, 2) * 0x1p-40f, whole(&state, 2) * 0x1p-40f, between(&state, 3, 4)}, 0, {0, 0, between(&state, -4, -3)}, INFINITY};
+        struct gn_ray from = {{whole(&state, 2) * 0x1p-40f, whole(&state, 2) * 0x1p-40f, between(&state, 3, 4)},
+                              0,
+                              {0, 0, between(&state, -4, -3)},
+                              INFINITY};
         struct ref_ray ray;
         struct crossing crossing[2];
         assert_true(ref_ray_make(&ray, &from));
@@ -686,12 +769,84 @@ static void test_double_rays(void **unused) {
     assert_true(tally.hits > 500 && tally.undecided > 100);
 }
 
+// Rays that pass a sphere within 1e-16 of its radius, on either side.
+static void test_double_tangents(void **unused) {
+    (void)unused;
+    uint64_t state = 600;
+    struct tally tally = {0};
+    for (int i = 0; i < 4000; i++) {
+        struct ref_ray ray = {.tmin = 0, .tmax = INFINITY};
+        float center[3], radius = between(&state, 1, 2);
+        double side[3], along[3], dot = 0, length = 0;
+        for (int k = 0; k < 3; k++) {
+            center[k] = between(&state, -4, 4);
+            along[k] = between(&state, -1, 1);
+            side[k] = between(&state, -1, 1);
+        }
+        for (int k = 0; k < 3; k++) dot += along[k] * side[k], length += along[k] * along[k];
+        for (int k = 0; k < 3; k++) side[k] -= dot / length * along[k];
+        length = sqrt(side[0] * side[0] + side[1] * side[1] + side[2] * side[2]);
+        for (int k = 0; k < 3; k++) {
+            ray.d[k] = along[k];
+            ray.o[k] = center[k] + radius / length * side[k] - 5 * along[k];
+        }
+        check_exact_sphere(&tally, ray, center, radius);
+    }
+    print_message("%u cases %u hits %u undecided %u wrong; plain fp64 %u wrong\n", tally.cases, tally.hits, tally.undecided, tally.wrong,
+                  tally.control_wrong);
+    assert_int_equal(tally.wrong, 0);
+    assert_true(tally.hits > 1000 && tally.hits < 3000 && tally.undecided > 1000 && tally.control_wrong > 100);
+}
+
+// Whether (c-o)·d > 0, of doubles all but at right angles.
+static void test_double_chords(void **unused) {
+    (void)unused;
+    uint64_t state = 700;
+    unsigned hits = 0, undecided = 0, wrong = 0;
+    oracle_vec l, d;
+    mpz_t b, o;
+    oracle_vec_init(l), oracle_vec_init(d);
+    mpz_inits(b, o, (mpz_ptr)0);
+    for (int i = 0; i < 4000; i++) {
+        struct ref_ray ray = {.tmin = 0, .tmax = INFINITY};
+        float center[3];
+        for (int k = 0; k < 3; k++) {
+            center[k] = between(&state, -4, 4);
+            ray.o[k] = center[k] + oracle_uniform(&state) - 0.5;
+            ray.d[k] = oracle_uniform(&state) - 0.5;
+        }
+        ray.d[2] = (ray.d[0] * (center[0] - ray.o[0]) + ray.d[1] * (center[1] - ray.o[1])) / (ray.o[2] - center[2]);
+        for (int k = 0; k < 3; k++) {
+            oracle_set(l[k], center[k]), oracle_set(o, ray.o[k]), oracle_set(d[k], ray.d[k]);
+            mpz_sub(l[k], l[k], o);
+        }
+        oracle_dot(b, l, d);
+        struct crossing crossing;
+        bool hit = sphere_cross_again(&crossing, &ray, center, 1);
+        hits += hit;
+        undecided += ray.undecided > 0;
+        wrong += hit != (mpz_sgn(b) > 0);
+    }
+    oracle_vec_clear(l), oracle_vec_clear(d);
+    mpz_clears(b, o, (mpz_ptr)0);
+    assert_int_equal(wrong, 0);
+    assert_true(hits > 1000 && hits < 3000 && undecided > 1000);
+}
+
 // A ray that starts on a sphere by definition: the other end of the chord, or nothing.
 static void test_sphere_again(void **unused) {
     (void)unused;
-    static const struct { double o[3], d[3], tmax; bool hit; float t; } cases[] = {
-        {{1, 0, 0}, {1, 0, 0}, 1, false, 0},    {{1, 0, 0}, {-4, 0, 0}, 1, true, 0.5f},       {{1, 0, 0}, {-2, 0, 0}, 1, false, 1},
-        {{1, 0, 0}, {0, 1, 0}, 1, false, 0},    {{1, 0, 0}, {-0x1p-52, 1, 0}, 1, true, 0x1p-51f}, {{1 + 0x1p-52, 0, 0}, {0, 1, 0}, 1, false, 0},
+    static const struct {
+        double o[3], d[3], tmax;
+        bool hit;
+        float t;
+    } cases[] = {
+        {{1, 0, 0}, {1, 0, 0}, 1, false, 0},
+        {{1, 0, 0}, {-4, 0, 0}, 1, true, 0.5f},
+        {{1, 0, 0}, {-2, 0, 0}, 1, false, 1},
+        {{1, 0, 0}, {0, 1, 0}, 1, false, 0},
+        {{1, 0, 0}, {-0x1p-52, 1, 0}, 1, true, 0x1p-51f},
+        {{1 + 0x1p-52, 0, 0}, {0, 1, 0}, 1, false, 0},
         {{1 - 0x1p-53, 0, 0}, {0x1p-60, 1, 0}, 1, false, 0},
     };
     static const float center[3] = {0, 0, 0};
@@ -711,11 +866,15 @@ static void test_sphere_again(void **unused) {
 
 static void test_normal_and_plane(void **unused) {
     (void)unused;
-    static const struct { float v[9]; double n[3]; } cases[] = {
+    static const struct {
+        float v[9];
+        double n[3];
+    } cases[] = {
         {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 1}},
         {{0, 0, 0, 1e-38f, 0, 0, 0, 1e-38f, 0}, {0, 0, 1}},
         {{0, 0, 0, 3e38f, 0, 0, 0, 0, 3e38f}, {0, -1, 0}},
-        {{0, 0, 0, 0x1.000002p23f, 0x1.000002p23f, 0, 0x1.000004p23f, 0x1.000004p23f, 0x1p-149f}, {0.70710678118654752, -0.70710678118654752, 0}},
+        {{0, 0, 0, 0x1.000002p23f, 0x1.000002p23f, 0, 0x1.000004p23f, 0x1.000004p23f, 0x1p-149f},
+         {0.70710678118654752, -0.70710678118654752, 0}},
         {{1, 2, 3, 1, 2, 3, 4, 5, 6}, {0, 0, 0}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -755,11 +914,15 @@ static void test_invalid_rays(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_triangles),    cmocka_unit_test(test_known_triangles), cmocka_unit_test(test_shared_edge),
-        cmocka_unit_test(test_fan),          cmocka_unit_test(test_sliver),          cmocka_unit_test(test_cube),
-        cmocka_unit_test(test_spheres),      cmocka_unit_test(test_known_spheres),   cmocka_unit_test(test_order),
-        cmocka_unit_test(test_near_ties),    cmocka_unit_test(test_double_rays),     cmocka_unit_test(test_sphere_again),
-        cmocka_unit_test(test_normal_and_plane), cmocka_unit_test(test_invalid_rays),
+        cmocka_unit_test(test_triangles),       cmocka_unit_test(test_known_triangles),
+        cmocka_unit_test(test_shared_edge),     cmocka_unit_test(test_fan),
+        cmocka_unit_test(test_sliver),          cmocka_unit_test(test_cube),
+        cmocka_unit_test(test_spheres),         cmocka_unit_test(test_known_spheres),
+        cmocka_unit_test(test_order),           cmocka_unit_test(test_twins),
+        cmocka_unit_test(test_near_ties),       cmocka_unit_test(test_double_rays),
+        cmocka_unit_test(test_double_tangents), cmocka_unit_test(test_double_chords),
+        cmocka_unit_test(test_sphere_again),    cmocka_unit_test(test_normal_and_plane),
+        cmocka_unit_test(test_invalid_rays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

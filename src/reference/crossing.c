@@ -18,15 +18,17 @@ bool ref_ray_make(struct ref_ray *out, const struct gn_ray *ray) {
 }
 
 void crossing_t(struct fraction *t, const struct ref_ray *ray, const struct crossing *crossing) {
-    if (crossing->center) sphere_t(t, ray, crossing);
-    else triangle_t(t, ray, crossing);
+    if (crossing->center)
+        sphere_t(t, ray, crossing);
+    else
+        triangle_t(t, ray, crossing);
 }
 
 // The sign of t - bound.
 static int compare_bound(struct ref_ray *ray, const struct crossing *crossing, double bound) {
     if (crossing->t.lo > bound) return 1;
     if (crossing->t.hi < bound) return -1;
-    if (isinf(bound)) return bound < 0 ? 1 : -1;    // t is finite, its interval may not be
+    if (isinf(bound)) return bound < 0 ? 1 : -1; // t is finite, its interval may not be
     ray->undecided++;
     struct fraction t;
     crossing_t(&t, ray, crossing);

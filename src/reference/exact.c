@@ -8,7 +8,7 @@
 #define HIGHEST 0x1p131
 
 bool exact_holds(double x) {
-    double scaled = x * (1 / LOWEST);   // exact, as nothing overflows or loses bits
+    double scaled = x * (1 / LOWEST); // exact, as nothing overflows or loses bits
     return fabs(x) < HIGHEST && floor(scaled) == scaled;
 }
 
@@ -43,9 +43,10 @@ static int floor_div(int a, int b) { return (a >= 0 ? a : a - b + 1) / b; }
 
 void exact_set(struct exact *out, double x) {
     assert(exact_holds(x));
-    int power;
-    uint64_t bits = (uint64_t)ldexp(frexp(fabs(x), &power), 53);
-    power -= 53;
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int power = (int)(bits >> 52 & 0x7ff) - 1075; // IEEE 754 binary64, normal: the domain has no denormals
+    bits = (bits & 0xfffffffffffffu) | 0x10000000000000u;
     out->sign = (x > 0) - (x < 0);
     out->exponent = floor_div(power, 32);
     unsigned shift = (unsigned)(power - 32 * out->exponent);
@@ -54,7 +55,7 @@ void exact_set(struct exact *out, double x) {
     out->limb[0] = (uint32_t)low;
     out->limb[1] = (uint32_t)high;
     out->limb[2] = (uint32_t)(high >> 32);
-    out->count = 3;
+    out->count = x == 0 ? 0 : 3;
     trim(out);
 }
 
@@ -79,7 +80,7 @@ static void combine_magnitudes(struct exact *out, const struct exact *a, const s
     struct exact sum;
     sum.exponent = bottom;
     sum.count = (unsigned)(top - bottom);
-    int64_t carry = 0;  // 0 or 1, or in a difference 0 or -1
+    int64_t carry = 0; // 0 or 1, or in a difference 0 or -1
     for (int at = bottom; at < top; at++) {
         int64_t y = limb_at(b, at);
         carry += (int64_t)limb_at(a, at) + (subtract ? -y : y);
@@ -123,7 +124,7 @@ void exact_mul(struct exact *out, const struct exact *a, const struct exact *b) 
     product.count = a->count + b->count;
     memset(product.limb, 0, product.count * sizeof product.limb[0]);
     for (unsigned i = 0; i < a->count; i++) {
-        uint64_t carry = 0;     // (2^32-1)² + 2·(2^32-1) = 2^64-1: never overflows
+        uint64_t carry = 0; // (2^32-1)² + 2·(2^32-1) = 2^64-1: never overflows
         for (unsigned j = 0; j < b->count; j++) {
             carry += (uint64_t)a->limb[i] * b->limb[j] + product.limb[i + j];
             product.limb[i + j] = (uint32_t)carry;

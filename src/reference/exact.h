@@ -1,12 +1,13 @@
 // Exact numbers: integers times a power of two, as wide as it takes, for decisions that fp64 cannot make.
 //
-// A number is sign × Σ limb[i]·2^(32·(exponent + i)). Sums, differences and products are exact. Only as many limbs are touched as the number needs, so
-// ordinary cases are cheap; the capacity covers the worst.
+// A number is sign × Σ limb[i]·2^(32·(exponent + i)). Sums, differences and products are exact. Only as many limbs are touched as the
+// number needs, so ordinary cases are cheap; the capacity covers the worst.
 //
-// Capacity: what enters is a double that is a multiple of 2^-233 and below 2^131 (exact_holds): every fp32 number, the half-way cases between two, and
-// the origins and directions of shadow rays. Differences of two are below 2^132. A homogeneous expression of degree n in such differences is a multiple
-// of 2^(-233·n) and smaller than (number of terms)·2^(132·n). The highest degree is 10 (a sphere's t against a triangle's, fraction.h) with fewer than
-// 2^16 terms: bits -2330 to 1336, limbs -73 to 41, 115 in all; a product before its zeros are trimmed may have one more at either end.
+// Capacity: what enters is a double that is a multiple of 2^-233 and below 2^131 (exact_holds): every fp32 number, the half-way cases
+// between two, and the origins and directions of shadow rays. Differences of two are below 2^132. A homogeneous expression of degree n in
+// such differences is a multiple of 2^(-233·n) and smaller than (number of terms)·2^(132·n). The highest degree is 10 (a sphere's t against
+// a triangle's, fraction.h) with fewer than 2^16 terms: bits -2330 to 1336, limbs -73 to 41, 115 in all; a product before its zeros are
+// trimmed may have one more at either end.
 #ifndef REFERENCE_EXACT_H
 #define REFERENCE_EXACT_H
 
@@ -19,9 +20,9 @@
 
 // Zeroed is zero.
 struct exact {
-    int sign;                       // -1, 0 or 1
-    int exponent;                   // of limb[0], in limbs
-    unsigned count;                 // limbs in use; the first and the last of them are not 0
+    int sign;       // -1, 0 or 1
+    int exponent;   // of limb[0], in limbs
+    unsigned count; // limbs in use; the first and the last of them are not 0
     uint32_t limb[EXACT_LIMBS];
 };
 
@@ -29,7 +30,7 @@ struct exact {
 bool exact_holds(double x);
 
 // In all of these `out` may be one of the operands.
-void exact_set(struct exact *out, double x);                                                // x as exact_holds says
+void exact_set(struct exact *out, double x); // x as exact_holds says
 void exact_add(struct exact *out, const struct exact *a, const struct exact *b);
 void exact_sub(struct exact *out, const struct exact *a, const struct exact *b);
 void exact_mul(struct exact *out, const struct exact *a, const struct exact *b);

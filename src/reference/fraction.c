@@ -12,7 +12,8 @@ static int sign_one_root(const struct exact *p, const struct exact *q, const str
 }
 
 // The sign of p + q·√f + r·√g: the same idea, (p + q·√f)² = (p² + q²f) + 2pq·√f against r²g.
-static int sign_two_roots(const struct exact *p, const struct exact *q, const struct exact *f, const struct exact *r, const struct exact *g) {
+static int sign_two_roots(const struct exact *p, const struct exact *q, const struct exact *f, const struct exact *r,
+                          const struct exact *g) {
     int first = sign_one_root(p, q, f), second = r->sign * g->sign;
     if (first * second >= 0) return first ? first : second;
     struct exact rational, square, cross;
@@ -28,8 +29,8 @@ static int sign_two_roots(const struct exact *p, const struct exact *q, const st
     return first * sign_one_root(&rational, &cross, f);
 }
 
-// a - b times both denominators, which are positive: (p_a·m_b - p_b·m_a) + root_a·m_b·√f_a - root_b·m_a·√f_b. Equal denominators cancel: all spheres
-// have the same, d·d, and the degree stays at 8.
+// a - b times both denominators, which are positive: (p_a·m_b - p_b·m_a) + root_a·m_b·√f_a - root_b·m_a·√f_b. Equal denominators cancel:
+// all spheres have the same, d·d, and the degree stays at 8.
 int fraction_compare(const struct fraction *a, const struct fraction *b) {
     struct exact p, other, scale_a, scale_b;
     exact_set(&scale_a, 1);

@@ -6,9 +6,9 @@
 
 struct fraction {
     struct exact p;
-    struct exact m;         // > 0
-    struct exact f;         // >= 0; not read where root is 0
-    int root;               // -1, 0 or 1
+    struct exact m; // > 0
+    struct exact f; // >= 0; not read where root is 0
+    int root;       // -1, 0 or 1
 };
 
 // The sign of a - b.

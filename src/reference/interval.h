@@ -6,10 +6,12 @@
 #include <math.h>
 #include <stdbool.h>
 
-struct interval { double lo, hi; };
+struct interval {
+    double lo, hi;
+};
 
-// The sum of a number rounded to nearest and its possible error: a double certainly below, or above. One rounding is at most 2^-53·|x|, or half
-// the smallest denormal.
+// The sum of a number rounded to nearest and its possible error: a double certainly below, or above. One rounding is at most 2^-53·|x|, or
+// half the smallest denormal.
 static inline double interval_down(double x) { return x - (fabs(x) * DBL_EPSILON + 0x1p-1074); }
 static inline double interval_up(double x) { return x + (fabs(x) * DBL_EPSILON + 0x1p-1074); }
 

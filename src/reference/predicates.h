@@ -1,7 +1,15 @@
 // Whether and where a ray crosses a triangle or a sphere, and which of two crossings comes first: decided exactly.
 //
-// Each decision is made in two stages. The first is fp64 with a proven bound on its error (derived beside each formula); what it leaves open
-// goes to exact integers. Intervals of t are kept so that most comparisons need neither. Rules and formulas: right answer, in docs/.
+// Each decision is made in two stages. The first is fp64 with a proven bound on its error (derived beside each formula); what it leaves
+// open goes to exact integers. Intervals of t are kept so that most comparisons need neither. The rules, in exact arithmetic on the fp32
+// inputs:
+//
+// Triangle. For an edge from p to q, f(p,q) = d·((q-o)×(p-o)); the ray crosses when U = f(v1,v2), V = f(v2,v0) and W = f(v0,v1) have one
+// sign, where a zero has the sign of its limit as o moves to o + (ε, ε², ε³): exactly one of two neighbours is crossed at their common
+// edge, and a closed surface an even number of times. No area, or a ray in its plane: not crossed. With D = U+V+W and N = (v1-v0)×(v2-v0),
+// t = ((v0-o)·N)/(d·N), u = V/D, v = W/D.
+// Sphere. F = r²(d·d) - |(c-o)×d|²; F < 0 misses, F = 0 does not; t is the smaller of ((c-o)·d ± √F)/(d·d) that lies within the interval.
+// The interval is open at both ends.
 #ifndef REFERENCE_PREDICATES_H
 #define REFERENCE_PREDICATES_H
 
@@ -12,11 +20,12 @@
 #include "reference/fraction.h"
 #include "reference/interval.h"
 
-// A ray with exact components: every number is as exact_holds says, but for infinite bounds. d is not zero; where tmin >= tmax nothing is crossed.
+// A ray with exact components: every number is as exact_holds says, but for infinite bounds. d is not zero; where tmin >= tmax nothing is
+// crossed.
 struct ref_ray {
     double o[3], d[3];
     double tmin, tmax;
-    uint32_t undecided;         // decisions that the first stage left open, so far
+    uint32_t undecided; // decisions that the first stage left open, so far
 };
 
 // The exact form of a ray. False, and a zeroed *out, for one that is invalid: a NaN or infinity in o or d, d = 0, a bound that is NaN.
@@ -26,18 +35,18 @@ bool ref_ray_make(struct ref_ray *out, const struct gn_ray *ray);
 enum sphere_root {
     ROOT_NEAR = -1,
     ROOT_FAR = 1,
-    ROOT_OTHER = 0,             // of a ray that starts on the sphere by definition: t = 2(c-o)·d/(d·d); the first one is 0
+    ROOT_OTHER = 0, // of a ray that starts on the sphere by definition: t = 2(c-o)·d/(d·d); the first one is 0
 };
 
 // Where a ray crosses a primitive. Pointers are borrowed from the scene.
 struct crossing {
-    const float *v[3];          // vertices of a triangle; NULL for a sphere
-    const float *center;        // of a sphere; NULL for a triangle
+    const float *v[3];   // vertices of a triangle; NULL for a sphere
+    const float *center; // of a sphere; NULL for a triangle
     float radius;
-    int side;                   // of a triangle: the sign of d·N; N = (v1-v0)×(v2-v0)
-    enum sphere_root root;      // of a sphere
-    struct interval t;          // contains the exact t; about 36 bits of it at least
-    uint32_t number;            // of the primitive in the BVH, as are the next three: filled by the traversal
+    int side;              // of a triangle: the sign of d·N; N = (v1-v0)×(v2-v0)
+    enum sphere_root root; // of a sphere
+    struct interval t;     // contains the exact t; about 36 bits of it at least
+    uint32_t number;       // of the primitive in the BVH, as are the next three: filled by the traversal
     uint32_t object, primitive, material;
 };
 

@@ -12,8 +12,8 @@
 
 struct reference_params {
     uint32_t width, height, spp, seed;
-    uint32_t effects;               // EFFECT_* bits that run
-    uint32_t aovs;                  // GN_AOV_* bits
+    uint32_t effects; // EFFECT_* bits that run
+    uint32_t aovs;    // GN_AOV_* bits
 };
 
 // Pictures: colour is the mean over the samples, linear, 3 channels; the AOVs as gnomon.h says, empty when not asked for.
@@ -27,7 +27,7 @@ bool reference_render(struct reference_film *out, struct context *ctx, const str
 void reference_film_finish(struct reference_film *film);
 
 // Shoots rays with exact decisions; t, u, v within 0.5 ulp (right-answer.md). `any`: only object is filled, 0 or -1.
-bool reference_trace(struct gn_hit *hits, struct context *ctx, const struct scene *scene, const struct bvh *bvh,
-                     const struct gn_ray *rays, size_t count, bool any);
+bool reference_trace(struct gn_hit *hits, struct context *ctx, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays,
+                     size_t count, bool any);
 
 #endif

@@ -22,8 +22,8 @@ struct picture {
 // What the samples of one pixel add up to.
 struct pixel {
     double color[3], normal[3], depth;
-    uint32_t finite, hits;          // samples
-    int32_t object, primitive;      // of sample 0
+    uint32_t finite, hits;     // samples
+    int32_t object, primitive; // of sample 0
     uint64_t rays;
 };
 

@@ -46,7 +46,8 @@ static bool resolve_some(void *data, size_t begin, size_t end, unsigned thread) 
     return true;
 }
 
-bool resolve_rays(struct resolve_answer *answers, struct context *ctx, const struct ref_world *world, const struct resolve_ray *rays, size_t count) {
+bool resolve_rays(struct resolve_answer *answers, struct context *ctx, const struct ref_world *world, const struct resolve_ray *rays,
+                  size_t count) {
     struct job job = {.answers = answers, .world = world, .rays = rays};
     return parallel_for(context_threads(ctx), count, 16, resolve_some, &job);
 }

@@ -7,17 +7,19 @@
 #define RESOLVE_NO_SELF UINT32_MAX
 
 struct resolve_ray {
-    float o[3], d[3], tmin, tmax;   // open interval
-    uint32_t self;                  // number in the BVH of the primitive that the ray starts on, or RESOLVE_NO_SELF
-    bool any;                       // occlusion only
+    float o[3], d[3], tmin, tmax; // open interval
+    uint32_t self;                // number in the BVH of the primitive that the ray starts on, or RESOLVE_NO_SELF
+    bool any;                     // occlusion only
 };
 
 struct resolve_answer {
-    struct gn_hit hit;              // as reference_trace gives it; of an occluded ray only object, 0
-    uint32_t number;                // of the primitive in the BVH
+    struct gn_hit hit; // as reference_trace gives it; of an occluded ray only object, 0
+    uint32_t number;   // of the primitive in the BVH
 };
 
-// Decides rays[0 … count) on all cores. Of the primitive a ray starts on, a triangle is not hit again, a sphere only at its other root. False when cancelled.
-bool resolve_rays(struct resolve_answer *answers, struct context *ctx, const struct ref_world *world, const struct resolve_ray *rays, size_t count);
+// Decides rays[0 … count) on all cores. Of the primitive a ray starts on, a triangle is not hit again, a sphere only at its other root.
+// False when cancelled.
+bool resolve_rays(struct resolve_answer *answers, struct context *ctx, const struct ref_world *world, const struct resolve_ray *rays,
+                  size_t count);
 
 #endif

@@ -27,8 +27,10 @@ float round_fraction(const struct fraction *exact, struct interval bounds) {
         double half_way = 0.5 * (as_number(from_ordinal(middle)) + as_number(from_ordinal(middle + 1)));
         int side = fraction_compare_number(exact, half_way);
         if (side == 0) return from_ordinal(middle % 2 == 0 ? middle : middle + 1);
-        if (side < 0) hi = middle;
-        else lo = middle + 1;
+        if (side < 0)
+            hi = middle;
+        else
+            lo = middle + 1;
     }
     return from_ordinal(lo);
 }
@@ -37,7 +39,7 @@ float round_fraction(const struct fraction *exact, struct interval bounds) {
 static float round_number(const struct ref_ray *ray, const struct crossing *crossing, struct interval bounds,
                           void (*number)(struct fraction *out, const struct ref_ray *ray, const struct crossing *crossing)) {
     float lo = (float)bounds.lo;
-    if (lo == (float)bounds.hi) return lo + 0.0f;   // never -0
+    if (lo == (float)bounds.hi) return lo + 0.0f; // never -0
     struct fraction exact;
     number(&exact, ray, crossing);
     return round_fraction(&exact, bounds);

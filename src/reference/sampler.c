@@ -13,9 +13,7 @@ static uint32_t hash(uint32_t x) {
     return x ^ x >> 16;
 }
 
-static uint32_t hash_pair(uint32_t seed, uint32_t value) {
-    return hash(seed ^ (value + 0x9e3779b9u + (seed << 6) + (seed >> 2)));
-}
+static uint32_t hash_pair(uint32_t seed, uint32_t value) { return hash(seed ^ (value + 0x9e3779b9u + (seed << 6) + (seed >> 2))); }
 
 // Each bit is flipped by a hash of the bits above it (nested uniform scrambling); the hash itself works from the lowest bit up.
 static uint32_t owen_scramble(uint32_t x, uint32_t seed) {

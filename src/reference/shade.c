@@ -67,8 +67,10 @@ struct surface surface_at(const struct ref_world *world, const struct ref_ray *r
     struct surface out = {.crossing = *crossing};
     for (int i = 0; i < 3; i++) out.wo[i] = -ray->d[i];
     normalize(out.wo);
-    if (crossing->center) sphere_surface(&out, ray);
-    else triangle_surface(&out, world, ray);
+    if (crossing->center)
+        sphere_surface(&out, ray);
+    else
+        triangle_surface(&out, world, ray);
     return out;
 }
 
@@ -84,7 +86,7 @@ static bool unshadowed(double color[3], const struct ref_world *world, const str
                        const double to_light[3]) {
     double distance2 = dot(to_light, to_light), l[3] = {to_light[0], to_light[1], to_light[2]};
     normalize(l);
-    double cosine = dot(surface->n, l);     // 0 where the light is at the point itself
+    double cosine = dot(surface->n, l); // 0 where the light is at the point itself
     if (!(cosine > 0)) return false;
     const struct scene_material *material = &world->scene->materials[surface->crossing.material];
     double diffuse = world->effects & EFFECT_DIFFUSE ? cosine : 0;

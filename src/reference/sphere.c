@@ -1,17 +1,21 @@
 // Ray against sphere.
 //
-// With l = c-o, b = l·d, a = d·d, F = r²a - |l×d|² and K = |l|²-r²: the roots are t = (b ± √F)/a; their product is K/a, since b²-F = aK. So with
-// q = b + s·√F, s the sign of b, in which nothing cancels, they are q/a and K/q (Press et al., Numerical Recipes, 5.6).
+// With l = c-o, b = l·d, a = d·d, F = r²a - |l×d|² and K = |l|²-r²: the roots are t = (b ± √F)/a; their product is K/a, since b²-F = aK. So
+// with q = b + s·√F, s the sign of b, in which nothing cancels, they are q/a and K/q (Press et al., Numerical Recipes, 5.6).
 //
-// Errors in fp64, u = 2^-53; nothing under- or overflows (degree 4: 2^-932 to 2^532). l carries u. a: 3u of itself. b: 4u of Σ|l_i·d_i|. K: 6u of
-// |l|² + r². F: with X = l×d and M_i = |l_j·d_k| + |l_k·d_j|, X̂_i is off by 3u·M_i, so X̂_i² by 6u·|X̂_i|M_i + 9u²·M_i²; squaring and
-// adding costs 3u·ΣX̂², r²a 5u of itself, the last difference u of both. In all at most 8u·(Σ|X̂_i|M̂_i + ΣX̂_i² + r²a) + 32u²·ΣM̂_i².
+// Errors in fp64, u = 2^-53; nothing under- or overflows (degree 4: 2^-932 to 2^532). l carries u. a: 3u of itself. b: 4u of Σ|l_i·d_i|. K:
+// 6u of |l|² + r². F: with X = l×d and M_i = |l_j·d_k| + |l_k·d_j|, X̂_i is off by 3u·M_i, so X̂_i² by 6u·|X̂_i|M_i + 9u²·M_i²; squaring
+// and adding costs 3u·ΣX̂², r²a 5u of itself, the last difference u of both. In all at most 8u·(Σ|X̂_i|M̂_i + ΣX̂_i² + r²a) + 32u²·ΣM̂_i².
 #include "reference/predicates.h"
 
 #define U 0x1p-53
 
-struct sphere_terms { struct interval a, b, f, k; };
-struct sphere_exact { struct exact a, b, f, k; };
+struct sphere_terms {
+    struct interval a, b, f, k;
+};
+struct sphere_exact {
+    struct exact a, b, f, k;
+};
 
 static struct interval discriminant_fp64(const double l[3], const double d[3], double r2a) {
     double squares = 0, mixed = 0, magnitudes = 0;
@@ -63,7 +67,8 @@ static void terms_exact(struct sphere_exact *out, const struct ref_ray *ray, con
 }
 
 static struct sphere_terms intervals_of(const struct sphere_exact *exact) {
-    return (struct sphere_terms){exact_interval(&exact->a), exact_interval(&exact->b), exact_interval(&exact->f), exact_interval(&exact->k)};
+    return (struct sphere_terms){exact_interval(&exact->a), exact_interval(&exact->b), exact_interval(&exact->f),
+                                 exact_interval(&exact->k)};
 }
 
 // Where |b| is below its error, either sign of q serves: only the accuracy depends on it.

@@ -11,17 +11,17 @@ struct walk {
     const struct ref_world *world;
     struct ref_ray *ray;
     const struct crossing *from;
-    bool any;                       // stop at the first crossing
-    double inverse[3];              // 1/d; 0 where d is
+    bool any;          // stop at the first crossing
+    double inverse[3]; // 1/d; 0 where d is
     bool found;
     struct crossing best;
-    double cut;                     // no crossing beyond it matters
+    double cut; // no crossing beyond it matters
 };
 
 // Where the ray enters a box, or +inf if it misses it: never later than exactly.
 //
-// (b-o)·(1/d) has three roundings: off by less than 2^-51 of itself. The pads are 2^-50, which covers their own rounding. A component d_i = 0 leaves
-// containment in the closed slab. Nothing under- or overflows but where a box is infinite.
+// (b-o)·(1/d) has three roundings: off by less than 2^-51 of itself. The pads are 2^-50, which covers their own rounding. A component d_i =
+// 0 leaves containment in the closed slab. Nothing under- or overflows but where a box is infinite.
 static double box_enter(const struct walk *walk, const struct bvh_node *node) {
     double enter = -INFINITY, leave = INFINITY;
     for (int i = 0; i < 3; i++) {
@@ -31,8 +31,9 @@ static double box_enter(const struct walk *walk, const struct bvh_node *node) {
             continue;
         }
         double a = (node->min[i] - o) * inverse, b = (node->max[i] - o) * inverse;
-        enter = fmax(enter, inverse > 0 ? a : b);
-        leave = fmin(leave, inverse > 0 ? b : a);
+        double near = inverse > 0 ? a : b, far = inverse > 0 ? b : a;
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
     }
     enter -= fabs(enter) * 0x1p-50;
     leave += fabs(leave) * 0x1p-50;
@@ -93,7 +94,10 @@ static bool try_primitive(struct walk *walk, uint32_t number) {
     return walk->any;
 }
 
-struct waiting { uint32_t node; double enter; };
+struct waiting {
+    uint32_t node;
+    double enter;
+};
 
 // Depth first, the nearer child first; what was pushed is dropped if a hit has come before it.
 static void walk_down(struct walk *walk) {
@@ -125,7 +129,9 @@ static struct walk walk_make(const struct ref_world *world, struct ref_ray *ray,
     return walk;
 }
 
-bool closest_hit(struct crossing *out, const struct ref_world *world, struct ref_ray *ray) { return closest_hit_from(out, world, ray, NULL); }
+bool closest_hit(struct crossing *out, const struct ref_world *world, struct ref_ray *ray) {
+    return closest_hit_from(out, world, ray, NULL);
+}
 
 bool closest_hit_from(struct crossing *out, const struct ref_world *world, struct ref_ray *ray, const struct crossing *from) {
     struct walk walk = walk_make(world, ray, from, false);

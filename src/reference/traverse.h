@@ -10,8 +10,8 @@
 struct ref_world {
     const struct scene *scene;
     const struct bvh *bvh;
-    uint32_t effects;               // EFFECT_TRIANGLES and EFFECT_SPHERES: what can be hit at all
-    uint32_t triangle_count;        // primitives from this number on are spheres
+    uint32_t effects;        // EFFECT_TRIANGLES and EFFECT_SPHERES: what can be hit at all
+    uint32_t triangle_count; // primitives from this number on are spheres
 };
 
 struct ref_world ref_world_make(const struct scene *scene, const struct bvh *bvh, uint32_t effects);
@@ -22,8 +22,8 @@ bool closest_hit(struct crossing *out, const struct ref_world *world, struct ref
 // The same for a ray that starts on a primitive, as below.
 bool closest_hit_from(struct crossing *out, const struct ref_world *world, struct ref_ray *ray, const struct crossing *from);
 
-// Whether there is any crossing. A ray that starts on a primitive leaves it out: `from` (or NULL) says which. A triangle is left out with all that lies in
-// its plane (or alone, if `from` has its number but not its vertices), a sphere with the one crossing at the start.
+// Whether there is any crossing. A ray that starts on a primitive leaves it out: `from` (or NULL) says which. A triangle is left out with
+// all that lies in its plane (or alone, if `from` has its number but not its vertices), a sphere with the one crossing at the start.
 bool any_hit(const struct ref_world *world, struct ref_ray *ray, const struct crossing *from);
 
 #endif

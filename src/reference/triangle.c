@@ -1,12 +1,13 @@
 // Ray against triangle.
 //
-// For an edge from p to q, f(p,q) = d·((q-o)×(p-o)). With E = q-p and B = q-o this is d·(E×B), as p-o = B-E: the form whose error grows with |E||B| and
-// not with |B|². U = f(v1,v2), V = f(v2,v0), W = f(v0,v1), D = U+V+W. With N = (v1-v0)×(v2-v0) and A = v0-o, T = A·N and S = d·N = -D (mind the sign):
-// t = T/S, u = V/D, v = W/D.
+// For an edge from p to q, f(p,q) = d·((q-o)×(p-o)). With E = q-p and B = q-o this is d·(E×B), as p-o = B-E: the form whose error grows
+// with |E||B| and not with |B|². U = f(v1,v2), V = f(v2,v0), W = f(v0,v1), D = U+V+W. With N = (v1-v0)×(v2-v0) and A = v0-o,
+// T = A·N and S = d·N = -D (mind the sign): t = T/S, u = V/D, v = W/D.
 //
-// Error in fp64, u = 2^-53. Differences are rounded once (u), products of two of them carry 3u, their difference 4u, times d_i 5u, and the sum of
-// three at most 7u: |f̂-f| <= ((1+u)^7 - 1)·P where P is the same sum over absolute values; P̂ differs from P as little, so that 8u·P̂ is a bound.
-// T has one difference more: 10u·P̂. Nothing under- or overflows: numbers as exact_holds says have products of degree 3 between 2^-699 and 2^400.
+// Error in fp64, u = 2^-53. Differences are rounded once (u), products of two of them carry 3u, their difference 4u, times d_i 5u, and the
+// sum of three at most 7u: |f̂-f| <= ((1+u)^7 - 1)·P where P is the same sum over absolute values; P̂ differs from P as little, so that
+// 8u·P̂ is a bound. T has one difference more: 10u·P̂. Nothing under- or overflows: numbers as exact_holds says have products of degree 3
+// between 2^-699 and 2^400.
 #include "reference/predicates.h"
 
 #define U 0x1p-53
@@ -68,8 +69,8 @@ static void edge_function_exact(struct exact *f, const struct ref_ray *ray, cons
     exact_dot(f, d, n);
 }
 
-// The sign of f(p,q), where a zero has the sign of its limit when o moves to o + (ε, ε², ε³): the gradient of f along o is (q-p)×d, and its first
-// component that is not zero decides. 0 if there is none: the edge is parallel to the ray, D is 0.
+// The sign of f(p,q), where a zero has the sign of its limit when o moves to o + (ε, ε², ε³): the gradient of f along o is (q-p)×d, and its
+// first component that is not zero decides. 0 if there is none: the edge is parallel to the ray, D is 0.
 static int edge_sign_exact(const struct ref_ray *ray, const float *p, const float *q) {
     struct exact f, e[3], d[3], gradient[3];
     edge_function_exact(&f, ray, p, q);
@@ -102,8 +103,12 @@ static int common_sign(struct ref_ray *ray, const float *const v[3]) {
 }
 
 // T and S.
-struct depth { struct interval t, s; };
-struct depth_exact { struct exact t, s; };
+struct depth {
+    struct interval t, s;
+};
+struct depth_exact {
+    struct exact t, s;
+};
 
 static struct depth depth_fp64(const struct ref_ray *ray, const float *const v[3]) {
     double a[3], e1[3], e2[3], magnitude_t, magnitude_s;
