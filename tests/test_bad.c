@@ -6,7 +6,9 @@
 #define FOLDER TEST_SOURCE_DIR "/tests/bad/"
 
 // The message begins with the file's path, unless `says` begins with another file's name; then comes `says`.
-static const struct { const char *file, *says; } cases[] = {
+static const struct {
+    const char *file, *says;
+} cases[] = {
     // scene files
     {"background_negative.json", ":3:24: background[2] is -1, expected a number of at least 0"},
     {"camera_at_itself.json", ":3:48: camera.look_at is the camera's position, expected a point to look at elsewhere"},
@@ -190,7 +192,8 @@ static void unreadable_files_are_another_matter(void **state) {
     scratch_assert_fails(scene_load(&scene, scratch_context(), "/nowhere/scene.json"), GN_IO, "/nowhere/scene.json: ");
     scratch_assert_fails(scene_load(&scene, scratch_context(), "/nowhere/model.ply"), GN_IO, "/nowhere/model.ply: ");
     scratch_assert_fails(scene_load(&scene, scratch_context(), FOLDER), GN_IO, "directory");
-    scratch_assert_fails(scene_load(&scene, scratch_context(), TEST_SOURCE_DIR "/CMakeLists.txt"), GN_SCENE, "expected .json");
+    scratch_assert_fails(scene_load(&scene, scratch_context(), TEST_SOURCE_DIR "/CMakeLists.txt"), GN_SCENE,
+                         "is no scene (.json) and no model");
 }
 
 int main(void) {

@@ -48,17 +48,21 @@ static void make_scene(struct sample *s) {
 }
 
 static void make_obj(struct sample *s) {
-    put_text(s, "# a comment\nmtllib part.mtl\no thing\nv 0 0 0\nv 1 0 0 1\r\nv 0 1.5 0 0.5 0.5 0.5\nv 0 0 \\\n -2\nvt 0 1\nvn 0 0 1\nvn 1 0 0\n"
-                "usemtl a\ns off\nf 1//1 3//1 2//2\nusemtl b\nf 1/1/1 2/1/1 4/1/2\nf -4 -1 -2\nf 2 3 4\nf 1 2 3 4\nl 1 2\n");
+    put_text(
+        s, "# a comment\nmtllib part.mtl\no thing\nv 0 0 0\nv 1 0 0 1\r\nv 0 1.5 0 0.5 0.5 0.5\nv 0 0 \\\n -2\nvt 0 1\nvn 0 0 1\nvn 1 0 0\n"
+           "usemtl a\ns off\nf 1//1 3//1 2//2\nusemtl b\nf 1/1/1 2/1/1 4/1/2\nf -4 -1 -2\nf 2 3 4\nf 1 2 3 4\nl 1 2\n");
 }
 
-static void make_mtl(struct sample *s) { put_text(s, "newmtl a\nKd 1 0 0\nKs 0.5\nNs 20\nnewmtl b\nKa 0 0 0\nKd xyz 1 2 3\nmap_Kd x.png\n"); }
+static void make_mtl(struct sample *s) {
+    put_text(s, "newmtl a\nKd 1 0 0\nKs 0.5\nNs 20\nnewmtl b\nKa 0 0 0\nKd xyz 1 2 3\nmap_Kd x.png\n");
+}
 
 static void make_ply_ascii(struct sample *s) {
-    put_text(s, "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty double x\nproperty float y\nproperty int z\n"
-                "property list uchar short extra\nproperty uchar red\nelement junk 2\nproperty float a\nelement face 3\nproperty uchar flag\n"
-                "property list uchar int vertex_indices\nend_header\n0 0 0 2 7 8 255\n1 0 0 0 0\n0 1.5 0 1 3 1\n0 0 -2 0 2\n1.5\n2.5\n"
-                "0 3 0 2 1\n1 3 0 1 3\n0 4 0 1 2 3\n");
+    put_text(s,
+             "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty double x\nproperty float y\nproperty int z\n"
+             "property list uchar short extra\nproperty uchar red\nelement junk 2\nproperty float a\nelement face 3\nproperty uchar flag\n"
+             "property list uchar int vertex_indices\nend_header\n0 0 0 2 7 8 255\n1 0 0 0 0\n0 1.5 0 1 3 1\n0 0 -2 0 2\n1.5\n2.5\n"
+             "0 3 0 2 1\n1 3 0 1 3\n0 4 0 1 2 3\n");
 }
 
 static void make_ply_binary(struct sample *s, bool big) {
@@ -103,11 +107,12 @@ static void make_stl_ascii(struct sample *s) {
     "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,1,2,3,1]},{\"camera\":0,\"rotation\":[0,0,0,1],\"scale\":[1,2,3]},{\"translation\":[0,5,0],"      \
     "\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,"         \
     "\"znear\":1}}],\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":"          \
-    "\"point\",\"color\":[1,1,1],\"intensity\":50}]}},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0},"        \
-    "\"indices\":1,\"material\":0},{\"attributes\":{\"POSITION\":0},\"mode\":5}]}],\"materials\":[{\"name\":\"m\","                       \
+    "\"point\",\"color\":[1,1,1],\"intensity\":50}]}},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0},"         \
+    "\"indices\":1,\"material\":0},{\"attributes\":{\"POSITION\":0},\"mode\":5}]}],\"materials\":[{\"name\":\"m\","                        \
     "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0,0,1],\"roughnessFactor\":0.5}}],\"accessors\":[{\"bufferView\":0,"                 \
     "\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"count\":12,\"type\":\"SCALAR\"}],"   \
-    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}],\"buffers\":[{\"byteLength\":60"
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}],\"buffers\":[{\"byteLength\":"  \
+    "60"
 
 static void make_glb(struct sample *s) {
     static const char json[] = GLTF_HEAD "}]}";
@@ -130,10 +135,14 @@ static void make_gltf(struct sample *s) {
                           "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAwD8AAAAAAAAAAAAAAAAAAADAAAIBAAEDAAMCAQID\"}]}");
 }
 
-static const struct { const char *name; void (*make)(struct sample *); uint32_t triangles; } kinds[] = {
-    {"scene.json", make_scene, 7}, {"part.obj", make_obj, 6},        {"ascii.ply", make_ply_ascii, 4}, {"little.ply", make_ply_little, 4},
-    {"big.ply", make_ply_big, 4},  {"binary.stl", make_stl_binary, 4}, {"ascii.stl", make_stl_ascii, 2}, {"mesh.glb", make_glb, 6},
-    {"mesh.gltf", make_gltf, 6},
+static const struct {
+    const char *name;
+    void (*make)(struct sample *);
+    uint32_t triangles;
+} kinds[] = {
+    {"scene.json", make_scene, 7},      {"part.obj", make_obj, 6},    {"ascii.ply", make_ply_ascii, 4},
+    {"little.ply", make_ply_little, 4}, {"big.ply", make_ply_big, 4}, {"binary.stl", make_stl_binary, 4},
+    {"ascii.stl", make_stl_ascii, 2},   {"mesh.glb", make_glb, 6},    {"mesh.gltf", make_gltf, 6},
 };
 #define KIND_COUNT (sizeof kinds / sizeof *kinds)
 
@@ -149,7 +158,8 @@ static void assert_sound(const struct scene *scene, const char *what) {
     }
     for (uint32_t i = 0; i < scene_sphere_count(scene); i++) {
         const struct scene_shape *shape = &scene->shapes[scene_sphere_object(scene, i)];
-        if (shape->type != SHAPE_SPHERE || !(shape->radius > 0) || !isfinite(shape->radius)) fail_msg("%s: sphere %u is not sound", what, i);
+        if (shape->type != SHAPE_SPHERE || !(shape->radius > 0) || !isfinite(shape->radius))
+            fail_msg("%s: sphere %u is not sound", what, i);
     }
 }
 
@@ -219,10 +229,17 @@ static void mutate(struct sample *sample, uint64_t *random) {
     for (uint32_t n = next_random(random) % 4 + 1; n > 0; n--) {
         unsigned char *byte = &sample->bytes[next_random(random) % sample->size];
         switch (next_random(random) % 4) {
-        case 0: *byte = (unsigned char)next_random(random); break;
-        case 1: *byte = (unsigned char)('0' + next_random(random) % 10); break;
-        case 2: *byte = sample->bytes[next_random(random) % sample->size]; break;
-        default: *byte ^= (unsigned char)(1u << next_random(random) % 8);
+        case 0:
+            *byte = (unsigned char)next_random(random);
+            break;
+        case 1:
+            *byte = (unsigned char)('0' + next_random(random) % 10);
+            break;
+        case 2:
+            *byte = sample->bytes[next_random(random) % sample->size];
+            break;
+        default:
+            *byte ^= (unsigned char)(1u << next_random(random) % 8);
         }
     }
 }

@@ -33,8 +33,9 @@ static void assert_indices(const struct scene_mesh *mesh, const uint32_t *expect
 static void obj_keeps_the_order_of_the_file(void **state) {
     (void)state;
     // A comment, every form of a corner, a continued line, CRLF, colors, negative numbers, a use before the definition.
-    struct model model = load_text("a.obj", "\xef\xbb\xbf# comment \\\n\nv 0 0 0 # here, too\r\n  v\t1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 \\\n 0\nvt 1 2\n"
-                                            "g a b\ns 1\nf 1/1 2/1 3/1 4/1 5\nf -1 -2/1 -4\nl 1 2\nv 16777217 3e-46 -0\nf 1 3 2");
+    struct model model =
+        load_text("a.obj", "\xef\xbb\xbf# comment \\\n\nv 0 0 0 # here, too\r\n  v\t1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 \\\n 0\nvt 1 2\n"
+                           "g a b\ns 1\nf 1/1 2/1 3/1 4/1 5\nf -1 -2/1 -4\nl 1 2\nv 16777217 3e-46 -0\nf 1 3 2");
     static const float vertices[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 16777216, 0, -0.0f};
     static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 3, 2, 0, 0, 2, 1};
     assert_vertices(&model.mesh, vertices, 5);
@@ -47,7 +48,8 @@ static void obj_keeps_the_order_of_the_file(void **state) {
 
 static void obj_splits_vertices_by_normal(void **state) {
     (void)state;
-    struct model model = load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 1//2 2/7/1 3//-2\nf 1 2 3\n");
+    struct model model =
+        load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 1//2 2/7/1 3//-2\nf 1 2 3\n");
     static const float vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0};
     static const float normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     static const uint32_t triangles[] = {0, 1, 2, 3, 1, 2, 4, 5, 6};
@@ -59,7 +61,8 @@ static void obj_splits_vertices_by_normal(void **state) {
 
 static void obj_has_materials(void **state) {
     (void)state;
-    const char library[] = "# two\nnewmtl red one\n Kd 1 0 0\n Ks 0.25\n Ns 20 \nmap_Kd a.png\nnewmtl blue\nKa 0 0 0.5\nKd 0 0 1\nNs -1\nnewmtl unused\nKd 1 1 1\n";
+    const char library[] = "# two\nnewmtl red one\n Kd 1 0 0\n Ks 0.25\n Ns 20 \nmap_Kd a.png\nnewmtl blue\nKa 0 0 0.5\nKd 0 0 1\nNs "
+                           "-1\nnewmtl unused\nKd 1 1 1\n";
     scratch_file("two colors.mtl", library, strlen(library));
     struct model model = load_text("a.obj", "mtllib two colors.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl red one\nf 1 2 3\nf 1 2 3\n"
                                             "usemtl blue\nusemtl red one\nusemtl blue\nf 1 2 3\nusemtl red one\nf 1 2 3\n");
@@ -83,7 +86,9 @@ static void note(void *user, enum gn_level level, const char *text) {
 
 static void obj_warns_of_what_is_missing(void **state) {
     (void)state;
-    static const struct { const char *text, *says; } cases[] = {
+    static const struct {
+        const char *text, *says;
+    } cases[] = {
         {"mtllib gone.mtl\nv 0 0 0\nf 1 1 1\n", "a.obj:1:8: material library "},
         {"v 0 0 0\nwhatever 3\nother 4\nf 1 1 1\n", "a.obj:2:1: statement 'whatever' is not known"},
         {"mtllib two\\ncolors.mtl\nusemtl x\nv 0 0 0\nf 1 1 1\n", "material library"},
@@ -102,7 +107,11 @@ static void obj_warns_of_what_is_missing(void **state) {
 
 // --------------------------------------------------------------------------------------------------------------------- PLY
 
-struct bytes { unsigned char data[4096]; size_t size; bool big; };
+struct bytes {
+    unsigned char data[4096];
+    size_t size;
+    bool big;
+};
 
 static void put_bits(struct bytes *bytes, uint64_t bits, unsigned size) {
     for (unsigned i = 0; i < size; i++) bytes->data[bytes->size++] = (unsigned char)(bits >> (8 * (bytes->big ? size - 1 - i : i)) & 0xff);
@@ -120,9 +129,11 @@ static void put_float(struct bytes *bytes, float value) {
     put_bits(bytes, bits, 4);
 }
 
-static const char ply_rest[] = "comment of no use\nobj_info none\nelement odd 2\nproperty list ushort double values\nproperty char c\nelement vertex 4\nproperty uchar red\n"
-                               "property double x\nproperty short y\nproperty list uchar float more\nproperty float z\nelement nothing 4000000000\n"
-                               "element face 2\nproperty float quality\nproperty list char ushort vertex_indices\nend_header\n";
+static const char ply_rest[] =
+    "comment of no use\nobj_info none\nelement odd 2\nproperty list ushort double values\nproperty char c\nelement vertex 4\nproperty "
+    "uchar red\n"
+    "property double x\nproperty short y\nproperty list uchar float more\nproperty float z\nelement nothing 4000000000\n"
+    "element face 2\nproperty float quality\nproperty list char ushort vertex_indices\nend_header\n";
 // 1 + 2^-24 + 2^-50 rounds up, by way of nothing else; y is an integer.
 #define PLY_X 1.00000005960464566
 static const float ply_vertices[] = {0, -2, 0.5f, 0x1.000002p0f, 3, 0, 2, -32768, 1e-40f, 4, 32767, -0.0f};
@@ -140,8 +151,10 @@ static void assert_ply(const char *path) {
 static void ply_is_the_same_in_ascii(void **state) {
     (void)state;
     char text[2048];
-    snprintf(text, sizeof text, "ply\nformat ascii 1.0\n%s2 1 2 3\n0 -1\n255 0 -2 2 nan nan .5\n0 %.17g 3 0 0\n0 2 -32768 1 1 1e-40\n0 4 32767 0\n-0\n"
-                                "0 3 0 1 2\n.5 4 3 2 1 0\n", ply_rest, PLY_X);
+    snprintf(text, sizeof text,
+             "ply\nformat ascii 1.0\n%s2 1 2 3\n0 -1\n255 0 -2 2 nan nan .5\n0 %.17g 3 0 0\n0 2 -32768 1 1 1e-40\n0 4 32767 0\n-0\n"
+             "0 3 0 1 2\n.5 4 3 2 1 0\n",
+             ply_rest, PLY_X);
     assert_ply(scratch_file("a.ply", text, strlen(text)));
 }
 
@@ -171,14 +184,19 @@ static void ply_has_normals_if_whole(void **state) {
     (void)state;
     for (int whole = 0; whole < 2; whole++) {
         char text[512];
-        snprintf(text, sizeof text, "ply\r\nformat ascii 1.0\r\nelement face 1\r\nproperty list uchar int vertex_index\r\nelement vertex 3\r\n"
-                                    "property float nx\r\nproperty float %s\r\nproperty float nz\r\nproperty float z\r\nproperty float y\r\nproperty float x\r\n"
-                                    "end_header\r\n3 0 1 2\r\n1 2 3 4 5 6\r\n1 2 3 4 5 7\r\n1 2 3 4 6 6\r\n", whole ? "ny" : "my");
+        snprintf(
+            text, sizeof text,
+            "ply\r\nformat ascii 1.0\r\nelement face 1\r\nproperty list uchar int vertex_index\r\nelement vertex 3\r\n"
+            "property float nx\r\nproperty float %s\r\nproperty float nz\r\nproperty float z\r\nproperty float y\r\nproperty float x\r\n"
+            "end_header\r\n3 0 1 2\r\n1 2 3 4 5 6\r\n1 2 3 4 5 7\r\n1 2 3 4 6 6\r\n",
+            whole ? "ny" : "my");
         struct model model = load_text("a.ply", text);
         static const float vertices[] = {6, 5, 4, 7, 5, 4, 6, 6, 4}, normals[] = {1, 2, 3, 1, 2, 3, 1, 2, 3};
         assert_vertices(&model.mesh, vertices, 3);
-        if (whole) assert_memory_equal(model.mesh.normals, normals, sizeof normals);
-        else assert_null(model.mesh.normals);
+        if (whole)
+            assert_memory_equal(model.mesh.normals, normals, sizeof normals);
+        else
+            assert_null(model.mesh.normals);
         model_finish(&model);
     }
 }
@@ -197,8 +215,9 @@ static void stl_is_the_same_in_both_forms(void **state) {
         for (int k = 0; k < 9; k++) put_float(&b, vertices[9 * i + k]);
         put_bits(&b, 0xabcd, 2);
     }
-    const char text[] = "solid facet\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid facet\n"
-                        "SOLID\n\n  FACET NORMAL 0 0 1 OUTER LOOP VERTEX 0 0 0\nVERTEX 0 1 0 VERTEX 0 0 1e-1 ENDLOOP ENDFACET ENDSOLID";
+    const char text[] =
+        "solid facet\nfacet normal nan nan nan\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid facet\n"
+        "SOLID\n\n  FACET NORMAL 0 0 1 OUTER LOOP VERTEX 0 0 0\nVERTEX 0 1 0 VERTEX 0 0 1e-1 ENDLOOP ENDFACET ENDSOLID";
     for (int ascii = 0; ascii < 2; ascii++) {
         struct model model;
         const char *path = ascii ? scratch_file("a.stl", text, strlen(text)) : scratch_file("a.STL", b.data, b.size);
@@ -214,7 +233,8 @@ static void stl_is_the_same_in_both_forms(void **state) {
 static void assert_near(const float a[3], double x, double y, double z, double error) {
     const double b[3] = {x, y, z};
     for (int i = 0; i < 3; i++)
-        if (!(fabs(a[i] - b[i]) <= error)) fail_msg("(%g, %g, %g), expected (%g, %g, %g)", (double)a[0], (double)a[1], (double)a[2], x, y, z);
+        if (!(fabs(a[i] - b[i]) <= error))
+            fail_msg("(%g, %g, %g), expected (%g, %g, %g)", (double)a[0], (double)a[1], (double)a[2], x, y, z);
 }
 
 // A triangle (0,0,0) (1,0,0) (0,1.5,0), indexed, and again as a strip, below a node that turns by 90° about z and another that moves.
@@ -225,11 +245,14 @@ static const char gltf[] =
     "{\"name\":\"same\",\"translation\":[10,20,30],\"children\":[1,4]},"
     "{\"translation\":[1,0,0],\"camera\":0},"
     "{\"translation\":[0,0,5],\"extensions\":{\"KHR_lights_punctual\":{\"light\":1}}}],"
-    "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"directional\"},{\"type\":\"point\",\"color\":[1,0.5,0],\"intensity\":8}]}},"
+    "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"directional\"},{\"type\":\"point\",\"color\":[1,0.5,0],\"intensity\":"
+    "8}]}},"
     "\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"aspectRatio\":3,\"znear\":0.1}}],"
-    "\"meshes\":[{\"primitives\":[{\"mode\":1,\"attributes\":{\"POSITION\":0}},{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":1},"
+    "\"meshes\":[{\"primitives\":[{\"mode\":1,\"attributes\":{\"POSITION\":0}},{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":"
+    "1},"
     "{\"attributes\":{\"POSITION\":0},\"mode\":5}]}],"
-    "\"materials\":[{\"name\":\"never\"},{\"name\":\"paint\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1],\"metallicFactor\":0,"
+    "\"materials\":[{\"name\":\"never\"},{\"name\":\"paint\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1],"
+    "\"metallicFactor\":0,"
     "\"roughnessFactor\":0.5}}],"
     "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
     "{\"bufferView\":0,\"byteOffset\":36,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"
@@ -330,15 +353,17 @@ static void smoothing_weighs_by_angle(void **state) {
 static void smoothing_goes_from_edge_to_edge(void **state) {
     (void)state;
     const float g = 1.618034f;
-    const float p[] = {-1, g, 0, 1, g, 0, -1, -g, 0, 1, -g, 0, 0, -1, g, 0, 1, g, 0, -1, -g, 0, 1, -g, g, 0, -1, g, 0, 1, -g, 0, -1, -g, 0, 1};
-    static const uint32_t f[] = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6, 7, 1, 8,
-                                 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1};
+    const float p[] = {-1, g,  0,  1, g, 0,  -1, -g, 0,  1, -g, 0, 0,  -1, g,  0,  1, g,
+                       0,  -1, -g, 0, 1, -g, g,  0,  -1, g, 0,  1, -g, 0,  -1, -g, 0, 1};
+    static const uint32_t f[] = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4,  11, 10, 2,  10, 7, 6, 7, 1, 8,
+                                 3, 9,  4, 3, 4, 2, 3, 2, 6, 3, 6, 8,  3, 8,  9,  4, 9, 5, 2, 4,  11, 6,  2,  10, 8,  6, 7, 9, 8, 1};
     // Each face with vertices of its own, as in an STL file, and zeros of both signs: equal positions are one.
     float separate[180];
     uint32_t numbers[60];
     for (uint32_t i = 0; i < 60; i++) {
         numbers[i] = i;
-        for (int k = 0; k < 3; k++) separate[3 * i + (uint32_t)k] = p[3 * f[i] + (uint32_t)k] * (i % 2 && p[3 * f[i] + (uint32_t)k] == 0 ? -1.0f : 1.0f);
+        for (int k = 0; k < 3; k++)
+            separate[3 * i + (uint32_t)k] = p[3 * f[i] + (uint32_t)k] * (i % 2 && p[3 * f[i] + (uint32_t)k] == 0 ? -1.0f : 1.0f);
     }
     struct scene_mesh mesh = mesh_of(separate, 60, numbers, 20);
     scratch_assert(mesh_smooth(&mesh, scratch_context(), 60));
@@ -430,12 +455,15 @@ static void transforms_round_once(void **state) {
 
 static void normals_go_by_the_inverse_transpose(void **state) {
     (void)state;
-    static const struct { struct transform t; double n[3], expected[3]; } cases[] = {
-        {{{{1, 0, 0, 5}, {0, 1e-4, 0, 6}, {0, 0, 1, 7}, {0, 0, 0, 1}}}, {1, 1, 0}, {1e-4, 1, 0}},      // flattened: the normal rises
-        {{{{-1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, {0.5, 1, 0}, {-0.5, 1, 0}},     // a mirror: same side
-        {{{{1, 1, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, {1, 0, 0}, {1, -1, 0}},          // sheared
+    static const struct {
+        struct transform t;
+        double n[3], expected[3];
+    } cases[] = {
+        {{{{1, 0, 0, 5}, {0, 1e-4, 0, 6}, {0, 0, 1, 7}, {0, 0, 0, 1}}}, {1, 1, 0}, {1e-4, 1, 0}}, // flattened: the normal rises
+        {{{{-1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, {0.5, 1, 0}, {-0.5, 1, 0}}, // a mirror: same side
+        {{{{1, 1, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, {1, 0, 0}, {1, -1, 0}},      // sheared
         {{{{1e-30, 0, 0, 0}, {0, 1e-30, 0, 0}, {0, 0, 1e-30, 0}, {0, 0, 0, 1}}}, {0, 0, 1}, {0, 0, 1}},
-        {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, {0, 0, 0}, {0, 0, 0}},           // none stays none
+        {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, {0, 0, 0}, {0, 0, 0}}, // none stays none
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct scene_mesh mesh;
@@ -450,7 +478,10 @@ static void normals_go_by_the_inverse_transpose(void **state) {
 
 static void conditions_do_not_depend_on_scale(void **state) {
     (void)state;
-    static const struct { struct transform t; bool sound; } cases[] = {
+    static const struct {
+        struct transform t;
+        bool sound;
+    } cases[] = {
         {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, true},
         {{{{1e-30, 0, 0, 0}, {0, -1e-30, 0, 0}, {0, 0, 1e-30, 0}, {0, 0, 0, 1}}}, true},
         {{{{1e200, 0, 0, 0}, {0, 1e200, 0, 0}, {0, 0, 1e200, 0}, {0, 0, 0, 1}}}, true},
@@ -462,7 +493,8 @@ static void conditions_do_not_depend_on_scale(void **state) {
     };
     assert_true(fabs(transform_condition(&cases[0].t) - 3) < 1e-12);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-        if ((transform_condition(&cases[i].t) < WORST_CONDITION) != cases[i].sound) fail_msg("case %zu: %g", i, transform_condition(&cases[i].t));
+        if ((transform_condition(&cases[i].t) < WORST_CONDITION) != cases[i].sound)
+            fail_msg("case %zu: %g", i, transform_condition(&cases[i].t));
 }
 
 static void equal_rows_are_found(void **state) {

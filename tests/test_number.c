@@ -14,7 +14,11 @@ static uint32_t bits_of(float value) {
 }
 
 // Length 0: the whole text.
-static const struct { const char *text; uint32_t bits; size_t length; } numbers[] = {
+static const struct {
+    const char *text;
+    uint32_t bits;
+    size_t length;
+} numbers[] = {
     {"0", 0x00000000, 0},
     {"-0", 0x80000000, 0},
     {"+1.5", 0x3fc00000, 0},
@@ -87,10 +91,12 @@ static void agrees_with_strtof(void **state) {
         const uint32_t bits = next_random(&random) & 0x7fffffff;
         float low;
         memcpy(&low, &bits, sizeof low);
-        if (i % 2) snprintf(text, sizeof text, "%u.%ue%d", next_random(&random), next_random(&random), (int)(next_random(&random) % 80) - 45);
+        if (i % 2)
+            snprintf(text, sizeof text, "%u.%ue%d", next_random(&random), next_random(&random), (int)(next_random(&random) % 80) - 45);
         else if (isfinite(low) && isfinite(nextafterf(low, INFINITY)))
             snprintf(text, sizeof text, "%.*e", (int)(next_random(&random) % 25) + 5, 0.5 * ((double)low + nextafterf(low, INFINITY)));
-        else continue;
+        else
+            continue;
         float value;
         assert_non_null(number_f32(&value, text));
         const float right = strtof(text, NULL);
@@ -102,9 +108,18 @@ static void agrees_with_strtof(void **state) {
 
 static void reads_integers(void **state) {
     (void)state;
-    static const struct { const char *text; int64_t value; size_t length; } cases[] = {
-        {"0", 0, 1}, {"-12/3", -12, 3}, {"+7 ", 7, 2}, {"9223372036854775807", INT64_MAX, 19}, {"9223372036854775808", INT64_MAX, 19},
-        {"-9223372036854775808", INT64_MIN, 20}, {"-99999999999999999999999", INT64_MIN, 24}, {"1.5", 1, 1}};
+    static const struct {
+        const char *text;
+        int64_t value;
+        size_t length;
+    } cases[] = {{"0", 0, 1},
+                 {"-12/3", -12, 3},
+                 {"+7 ", 7, 2},
+                 {"9223372036854775807", INT64_MAX, 19},
+                 {"9223372036854775808", INT64_MAX, 19},
+                 {"-9223372036854775808", INT64_MIN, 20},
+                 {"-99999999999999999999999", INT64_MIN, 24},
+                 {"1.5", 1, 1}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         int64_t value;
         const char *end = number_i64(&value, cases[i].text);

@@ -14,14 +14,15 @@
 // A scene with the camera at `camera` and one material "m"; then disabled effects.
 struct scene_case {
     const char *camera, *material, *lights, *shapes, *more, *disable;
-    const char *effects;        // that run
+    const char *effects; // that run
 };
 
 static struct scene load_case(const struct scene_case *c) {
     char text[2048];
     struct scene scene;
-    snprintf(text, sizeof text, "{\"version\": 1, \"camera\": {\"position\": %s, \"look_at\": [0,0,-9]}, \"materials\": {\"m\": {%s}, \"unused\": "
-                                "{\"diffuse\": [1,1,1], \"specular\": [1,1,1]}}, \"lights\": [%s], \"shapes\": [%s]%s}",
+    snprintf(text, sizeof text,
+             "{\"version\": 1, \"camera\": {\"position\": %s, \"look_at\": [0,0,-9]}, \"materials\": {\"m\": {%s}, \"unused\": "
+             "{\"diffuse\": [1,1,1], \"specular\": [1,1,1]}}, \"lights\": [%s], \"shapes\": [%s]%s}",
              c->camera, c->material, c->lights, c->shapes, c->more ? c->more : "");
     scratch_assert(scene_load(&scene, scratch_context(), scratch_file("a.json", text, strlen(text))));
     return scene;
@@ -40,7 +41,10 @@ static const struct scene_case cases[] = {
     // Light: it takes a light and a material in use with a channel in common.
     {OUTSIDE, MATT, SUN, TRIANGLE, NULL, NULL, "triangles,diffuse"},
     {OUTSIDE, SHINY, SUN, TRIANGLE, NULL, NULL, "triangles,specular"},
-    {OUTSIDE, SHINY "," "\"ambient\": [1,1,1]", LIGHT("[0,9,0]", "[1,1,0]"), TRIANGLE, NULL, NULL, "triangles"},
+    {OUTSIDE,
+     SHINY ","
+           "\"ambient\": [1,1,1]",
+     LIGHT("[0,9,0]", "[1,1,0]"), TRIANGLE, NULL, NULL, "triangles"},
     {OUTSIDE, MATT, LIGHT("[0,9,0]", "[0,0,0]"), TRIANGLE "," SPHERE, NULL, NULL, "triangles,spheres,bvh"},
     {OUTSIDE, MATT, LIGHT("[0,9,0]", "[0,1,0]") "," LIGHT("[0,9,0]", "[1,0,0]"), TRIANGLE, NULL, NULL, "triangles,diffuse"},
     {OUTSIDE, MATT, "", TRIANGLE "," TRIANGLE, NULL, NULL, "triangles"},
@@ -49,12 +53,12 @@ static const struct scene_case cases[] = {
     {OUTSIDE, MATT, SUN, TRIANGLE "," TRIANGLE, ", \"shadows\": false", NULL, "triangles,diffuse"},
     {OUTSIDE, MATT, SUN, SPHERE "," SPHERE, NULL, NULL, "spheres,diffuse,shadows"},
     {OUTSIDE, MATT, SUN, SPHERE, NULL, NULL, "spheres,diffuse"},
-    {OUTSIDE, MATT, LIGHT("[0,0,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse"},               // the light is inside
-    {"[0,0,-3]", MATT, SUN, SPHERE, NULL, NULL, "spheres,diffuse,shadows"},                             // the camera is inside
-    {"[0,0,-2]", MATT, SUN, SPHERE, NULL, NULL, "spheres,diffuse,shadows"},                             // on it
-    {"[0,0,-2.5]", MATT, LIGHT("[0,0,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse"},          // both are inside
+    {OUTSIDE, MATT, LIGHT("[0,0,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse"},      // the light is inside
+    {"[0,0,-3]", MATT, SUN, SPHERE, NULL, NULL, "spheres,diffuse,shadows"},                    // the camera is inside
+    {"[0,0,-2]", MATT, SUN, SPHERE, NULL, NULL, "spheres,diffuse,shadows"},                    // on it
+    {"[0,0,-2.5]", MATT, LIGHT("[0,0,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse"}, // both are inside
     {"[0,0,-2.5]", MATT, LIGHT("[0,0,-3]", "[1,1,1]") "," SUN, SPHERE, NULL, NULL, "spheres,diffuse,shadows"},
-    {"[0,0,-2.5]", MATT, LIGHT("[0,1,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse,shadows"},  // the light is on it
+    {"[0,0,-2.5]", MATT, LIGHT("[0,1,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse,shadows"}, // the light is on it
     // Disabled effects, and what hangs on them.
     {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "shadows", "triangles,spheres,bvh,diffuse"},
     {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "diffuse", "triangles,spheres,bvh"},
@@ -86,10 +90,14 @@ static void each_scene_calls_for_what_it_needs(void **state) {
 static void reasons_name_the_culprit(void **state) {
     (void)state;
     static const struct scene_case c = {OUTSIDE, MATT, LIGHT("[0,9,0]", "[0,1,1]") "," SUN, TRIANGLE "," SPHERE, NULL, "spheres", ""};
-    static const char *const reasons[EFFECT_COUNT] = {
-        "shape 0 and 1 triangle in all", "disabled on request", "1 primitive: one leaf", "no mesh has vertex normals",
-        "light 1 and the diffuse color of material 'm' on shape 0", "no material in use has a specular color that a light could show",
-        "a triangle alone casts no shadow on itself", "7 samples per pixel"};
+    static const char *const reasons[EFFECT_COUNT] = {"shape 0 and 1 triangle in all",
+                                                      "disabled on request",
+                                                      "1 primitive: one leaf",
+                                                      "no mesh has vertex normals",
+                                                      "light 1 and the diffuse color of material 'm' on shape 0",
+                                                      "no material in use has a specular color that a light could show",
+                                                      "a triangle alone casts no shadow on itself",
+                                                      "7 samples per pixel"};
     struct scene scene = load_case(&c);
     struct plan plan;
     scratch_assert(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 7, .disable = c.disable}));
@@ -105,15 +113,19 @@ static void without_pruning_everything_runs(void **state) {
     struct plan plan;
     scratch_assert(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .no_prune = true}));
     assert_int_equal(plan.effects, (1u << EFFECT_COUNT) - 1);
-    scratch_assert(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .no_prune = true, .disable = "shadows,spheres"}));
+    scratch_assert(
+        plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .no_prune = true, .disable = "shadows,spheres"}));
     assert_int_equal(plan.effects, ((1u << EFFECT_COUNT) - 1) & ~(uint32_t)(EFFECT_SHADOWS | EFFECT_SPHERES));
     scene_finish(&scene);
 }
 
 static void names_are_checked(void **state) {
     (void)state;
-    static const struct { const char *list, *says; } bad[] = {
-        {"shadow", "'shadow' is no effect, expected some of: triangles,spheres,bvh,smooth_normals,diffuse,specular,shadows,antialiasing; did you mean 'shadows'?"},
+    static const struct {
+        const char *list, *says;
+    } bad[] = {
+        {"shadow", "'shadow' is no effect, expected some of: triangles,spheres,bvh,smooth_normals,diffuse,specular,shadows,antialiasing; "
+                   "did you mean 'shadows'?"},
         {"bvh,,shadows", "'' is no effect"},
         {"bvh,", "'' is no effect"},
         {",", "'' is no effect"},
@@ -123,7 +135,8 @@ static void names_are_checked(void **state) {
     struct scene scene = {0};
     struct plan plan;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        scratch_assert_fails(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .disable = bad[i].list}), GN_USAGE, bad[i].says);
+        scratch_assert_fails(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .disable = bad[i].list}), GN_USAGE,
+                             bad[i].says);
     scratch_assert(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .disable = ""}));
     assert_string_equal(effect_name(0), "triangles");
     assert_string_equal(effect_name(EFFECT_COUNT), "");

@@ -29,17 +29,20 @@ static void assert_float3(const float a[3], double x, double y, double z) {
 static void every_key_counts(void **state) {
     (void)state;
     scratch_file("part.obj", QUAD "f 1 2 3 4\n", strlen(QUAD "f 1 2 3 4\n"));
-    struct scene s = load_text("a.json",
+    struct scene s = load_text(
+        "a.json",
         "{\"version\": 1.0, \"camera\": {\"position\": [1,2,3], \"look_at\": [4,5,6], \"up\": [0,0,1], \"fov_y_deg\": 90},"
         "\"film\": {\"width\": 640, \"height\": 65535, \"spp\": 16777216, \"transfer\": \"linear\"}, \"background\": [0.1,0.2,0.3],"
         "\"ambient\": [0.4,0.5,0.6], \"shadows\": false,"
         "\"materials\": {\"red\": {\"ambient\": [1,0,0], \"diffuse\": [0.5,0,0], \"specular\": [0,1,0], \"shininess\": 0}, \"plain\": {},"
         " \"blue\": {\"diffuse\": [0,0,7]}},"
         "\"lights\": [{\"type\": \"point\", \"position\": [-10,10,4]},"
-        " {\"type\": \"point\", \"position\": [0,0,100000000000000000000], \"intensity\": [0,8,16777217], \"falloff\": \"inverse_square\"}],"
+        " {\"type\": \"point\", \"position\": [0,0,100000000000000000000], \"intensity\": [0,8,16777217], \"falloff\": "
+        "\"inverse_square\"}],"
         "\"shapes\": [{\"type\": \"sphere\", \"center\": [0,0,-3], \"radius\": 1e-40, \"material\": \"blue\"},"
         " {\"type\": \"triangle\", \"vertices\": [[-1,-1,-3.5],[1,1,-3],[0.75,-1,-2.5]], \"material\": \"red\"},"
-        " {\"type\": \"mesh\", \"file\": \"part.obj\", \"material\": \"plain\", \"transform\": [[0,-1,0,0],[1,0,0,0],[0,0,1,0.1],[0,0,0,1]]}]}");
+        " {\"type\": \"mesh\", \"file\": \"part.obj\", \"material\": \"plain\", \"transform\": "
+        "[[0,-1,0,0],[1,0,0,0],[0,0,1,0.1],[0,0,0,1]]}]}");
     assert_float3(s.camera.position, 1, 2, 3);
     assert_float3(s.camera.look_at, 4, 5, 6);
     assert_float3(s.camera.up, 0, 0, 1);
@@ -88,8 +91,10 @@ static void defaults_are_as_described(void **state) {
 
 static void shapes_without_material_get_the_default(void **state) {
     (void)state;
-    struct scene s = load_text("a.json", "{\"version\": 1, \"materials\": {\"m\": {}}, \"shapes\": ["
-                                         "{\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 1}, {\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 2}]}");
+    struct scene s = load_text(
+        "a.json",
+        "{\"version\": 1, \"materials\": {\"m\": {}}, \"shapes\": ["
+        "{\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 1}, {\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 2}]}");
     assert_int_equal(s.material_count, 2);
     assert_string_equal(s.materials[1].name, "default");
     assert_true(s.shapes[0].material == 1 && s.shapes[1].material == 1);
@@ -102,13 +107,14 @@ static void shapes_without_material_get_the_default(void **state) {
 
 static void meshes_bring_their_materials(void **state) {
     (void)state;
-    const char library[] = "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n", two[] = "mtllib m.mtl\n" QUAD "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n",
-               one[] = "mtllib m.mtl\n" QUAD "usemtl b\nf 1 2 3\n";
+    const char library[] = "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n",
+               two[] = "mtllib m.mtl\n" QUAD "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n", one[] = "mtllib m.mtl\n" QUAD "usemtl b\nf 1 2 3\n";
     scratch_file("m.mtl", library, strlen(library));
     scratch_file("two.obj", two, strlen(two));
     scratch_file("one.obj", one, strlen(one));
-    struct scene s = load_text("a.json", "{\"version\": 1, \"materials\": {\"a\": {}}, \"shapes\": [{\"type\": \"mesh\", \"file\": \"two.obj\"},"
-                                         "{\"type\": \"mesh\", \"file\": \"one.obj\"}, {\"type\": \"mesh\", \"file\": \"two.obj\", \"material\": \"a\"}]}");
+    struct scene s = load_text(
+        "a.json", "{\"version\": 1, \"materials\": {\"a\": {}}, \"shapes\": [{\"type\": \"mesh\", \"file\": \"two.obj\"},"
+                  "{\"type\": \"mesh\", \"file\": \"one.obj\"}, {\"type\": \"mesh\", \"file\": \"two.obj\", \"material\": \"a\"}]}");
     assert_int_equal(s.material_count, 4); // the scene's, two, one
     assert_int_equal(scene_triangle_at(&s, 0).material, 1);
     assert_int_equal(scene_triangle_at(&s, 1).material, 2);
@@ -124,7 +130,11 @@ static void normals_are_as_asked_for(void **state) {
     const char plain[] = QUAD "f 1 2 3 4\n", normal[] = QUAD "vn 0 1 1\nf 1//1 2//1 3//1 4//1\n";
     scratch_file("plain.obj", plain, strlen(plain));
     scratch_file("normal.obj", normal, strlen(normal));
-    static const struct { const char *file, *normals; bool there; float z; } cases[] = {
+    static const struct {
+        const char *file, *normals;
+        bool there;
+        float z;
+    } cases[] = {
         {"plain.obj", "", false, 0},
         {"plain.obj", ", \"normals\": \"file\"", false, 0},
         {"plain.obj", ", \"normals\": \"smooth\"", true, 1},
@@ -135,7 +145,8 @@ static void normals_are_as_asked_for(void **state) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[512];
-        snprintf(text, sizeof text, "{\"version\": 1, \"shapes\": [{\"type\": \"mesh\", \"file\": \"%s\"%s}]}", cases[i].file, cases[i].normals);
+        snprintf(text, sizeof text, "{\"version\": 1, \"shapes\": [{\"type\": \"mesh\", \"file\": \"%s\"%s}]}", cases[i].file,
+                 cases[i].normals);
         struct scene s = load_text("a.json", text);
         const float *n = s.shapes[0].mesh.normals;
         if ((n != NULL) != cases[i].there || (n && n[2] != cases[i].z)) fail_msg("case %zu: %g", i, n ? (double)n[2] : -1.0);
@@ -146,9 +157,10 @@ static void normals_are_as_asked_for(void **state) {
 static void numbers_lead_to_shapes(void **state) {
     (void)state;
     scratch_file("part.obj", QUAD "f 1 2 3 4\n", strlen(QUAD "f 1 2 3 4\n"));
-    struct scene s = load_text("a.json", "{\"version\": 1, \"shapes\": [{\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 1},"
-                                         "{\"type\": \"mesh\", \"file\": \"part.obj\"}, {\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 1},"
-                                         "{\"type\": \"triangle\", \"vertices\": [[7,0,0],[8,0,0],[9,0,0]]}, {\"type\": \"mesh\", \"file\": \"part.obj\"}]}");
+    struct scene s = load_text(
+        "a.json", "{\"version\": 1, \"shapes\": [{\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 1},"
+                  "{\"type\": \"mesh\", \"file\": \"part.obj\"}, {\"type\": \"sphere\", \"center\": [0,0,0], \"radius\": 1},"
+                  "{\"type\": \"triangle\", \"vertices\": [[7,0,0],[8,0,0],[9,0,0]]}, {\"type\": \"mesh\", \"file\": \"part.obj\"}]}");
     static const uint32_t triangles[] = {0, 0, 2, 2, 3, 5}, spheres[] = {0, 1, 1, 2, 2, 2};
     assert_memory_equal(s.first_triangle, triangles, sizeof triangles);
     assert_memory_equal(s.first_sphere, spheres, sizeof spheres);
@@ -168,7 +180,9 @@ static void numbers_lead_to_shapes(void **state) {
 
 static void bounds_go_outward(void **state) {
     (void)state;
-    static const struct { float center, radius, low, high; } cases[] = {
+    static const struct {
+        float center, radius, low, high;
+    } cases[] = {
         {0, 1, -1, 1},
         {1, 0x1p-30f, 0x1.fffffep-1f, 0x1.000002p0f},
         {0.1f, 0.2f, -0x1.99999ap-4f, 0x1.333334p-2f}, // -0.1 exactly; 0.3 is between two floats
@@ -179,7 +193,8 @@ static void bounds_go_outward(void **state) {
         struct scene_shape shape = {.type = SHAPE_SPHERE, .center = {cases[i].center, 0, -cases[i].center}, .radius = cases[i].radius};
         struct scene s = {.shapes = &shape, .shape_count = 1};
         scene_bounds(&s);
-        if (s.bounds_min[0] != cases[i].low || s.bounds_max[0] != cases[i].high || s.bounds_min[2] != -cases[i].high || s.bounds_max[2] != -cases[i].low)
+        if (s.bounds_min[0] != cases[i].low || s.bounds_max[0] != cases[i].high || s.bounds_min[2] != -cases[i].high ||
+            s.bounds_max[2] != -cases[i].low)
             fail_msg("case %zu: %a to %a", i, (double)s.bounds_min[0], (double)s.bounds_max[0]);
     }
     struct scene s = load_text("a.obj", QUAD "v 99 99 99\nf 1 2 3\n"); // a stray vertex does not count
@@ -190,7 +205,8 @@ static void bounds_go_outward(void **state) {
 
 static void there_is_a_limit(void **state) {
     (void)state;
-    struct scene_shape shapes[2] = {{.type = SHAPE_MESH, .mesh = {.triangle_count = MOST_PRIMITIVES}}, {.type = SHAPE_MESH, .mesh = {.triangle_count = 1}}};
+    struct scene_shape shapes[2] = {{.type = SHAPE_MESH, .mesh = {.triangle_count = MOST_PRIMITIVES}},
+                                    {.type = SHAPE_MESH, .mesh = {.triangle_count = 1}}};
     struct scene s = {.path = "big.json", .shapes = shapes, .shape_count = 2};
     scratch_assert_fails(scene_derive(&s, scratch_context()), GN_LIMIT, "big.json: the scene has more than 67108863 triangles");
     free(s.first_triangle);
@@ -245,7 +261,8 @@ static void models_are_lit(void **state) {
     assert_true(s.lights[0].position[1] > s.camera.position[1]); // key light: above, and on the left of the view
     double left = 0;
     const double view[3] = {(double)s.camera.look_at[0] - s.camera.position[0], 0, (double)s.camera.look_at[2] - s.camera.position[2]};
-    left = view[2] * ((double)s.lights[0].position[0] - s.camera.look_at[0]) - view[0] * ((double)s.lights[0].position[2] - s.camera.look_at[2]);
+    left = view[2] * ((double)s.lights[0].position[0] - s.camera.look_at[0]) -
+           view[0] * ((double)s.lights[0].position[2] - s.camera.look_at[2]);
     assert_true(left > 0);
     assert_true(s.background[0] > 0 && s.ambient[0] > 0 && s.shapes[0].mesh.normals != NULL);
     assert_string_equal(s.materials[0].name, "default");

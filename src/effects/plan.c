@@ -8,15 +8,15 @@
 #include "scene/words.h"
 
 #define BECAUSE_SIZE sizeof(((struct plan *)0)->because[0])
-#define FEW_PRIMITIVES 4        // as many are tested one by one as fast as by way of boxes
+#define FEW_PRIMITIVES 4 // as many are tested one by one as fast as by way of boxes
 
 // What the rules look at. Shapes of a disabled kind are not there.
 struct facts {
     const struct scene *scene;
-    uint32_t disabled;          // EFFECT_* bits
-    uint32_t effects;           // that run, of those with a lower number
+    uint32_t disabled; // EFFECT_* bits
+    uint32_t effects;  // that run, of those with a lower number
     uint32_t spp;
-    uint32_t *used_by;          // for each material the first shape that uses it, or NOT_USED
+    uint32_t *used_by; // for each material the first shape that uses it, or NOT_USED
     uint32_t triangles, spheres;
     uint32_t shapes, last_shape; // how many there are, and the last
 };
@@ -52,9 +52,12 @@ static bool facts_init(struct facts *out, struct context *ctx, const struct scen
         if (!is_there(out, i)) continue;
         out->shapes++;
         out->last_shape = i;
-        if (shape->type == SHAPE_SPHERE) out->spheres++;
-        else out->triangles += shape->mesh.triangle_count;
-        if (!shape->mesh.materials) note_material(out, shape->material, i);
+        if (shape->type == SHAPE_SPHERE)
+            out->spheres++;
+        else
+            out->triangles += shape->mesh.triangle_count;
+        if (!shape->mesh.materials)
+            note_material(out, shape->material, i);
         else
             for (uint32_t k = 0; k < shape->mesh.triangle_count; k++) note_material(out, shape->mesh.materials[k], i);
     }
@@ -71,7 +74,8 @@ static uint32_t first_light(const struct scene *scene, int channel) {
 static const float *diffuse_of(const struct scene_material *material) { return material->diffuse; }
 static const float *specular_of(const struct scene_material *material) { return material->specular; }
 
-// A light and a material in use whose colors have a channel in common: the product of intensity and color is 0 for all others, and so is what they add.
+// A light and a material in use whose colors have a channel in common: the product of intensity and color is 0 for all others, and so is
+// what they add.
 static bool light_meets(const struct facts *facts, const float *(*color)(const struct scene_material *), const char *name, char *because) {
     const struct scene *scene = facts->scene;
     uint32_t light[3], shining = 0;
@@ -130,9 +134,10 @@ static int side_of(const struct scene_shape *sphere, const float point[3]) {
     return square < radius2 * (1 - 1e-12) ? 1 : square > radius2 * (1 + 1e-12) ? -1 : 0;
 }
 
-// A sphere alone. From outside, one sees the outward side of points whose normal n points outward, and a light counts where n·l > 0: from such a point the
-// way to the light leaves the ball, which is convex, and never meets it again. A light inside the ball counts only for the inward side, and
-// the way to it stays inside. What is left, a light outside that would shine on the inward side, needs a camera that is not outside.
+// A sphere alone. From outside, one sees the outward side of points whose normal n points outward, and a light counts where n·l > 0: from
+// such a point the way to the light leaves the ball, which is convex, and never meets it again. A light inside the ball counts only for the
+// inward side, and the way to it stays inside. What is left, a light outside that would shine on the inward side, needs a camera that is
+// not outside.
 static bool sphere_shadows_itself(const struct scene *scene, const struct scene_shape *sphere) {
     if (side_of(sphere, scene->camera.position) < 0) return false;
     for (uint32_t i = 0; i < scene->light_count; i++)
@@ -159,7 +164,10 @@ static bool rule_ANTIALIASING(const struct facts *facts, char *because) {
 
 // -------------------------------------------------------------------------------------------------------------------- plan
 
-static const struct { const char *name; bool (*rule)(const struct facts *, char *); } effects[EFFECT_COUNT] = {
+static const struct {
+    const char *name;
+    bool (*rule)(const struct facts *, char *);
+} effects[EFFECT_COUNT] = {
 #define X(number, id, name, text) [number] = {name, rule_##id},
     EFFECTS(X)
 #undef X
@@ -171,7 +179,8 @@ void effect_names(uint32_t bits, char *text, size_t capacity) {
     size_t used = 0;
     if (capacity) text[0] = '\0';
     for (uint32_t i = 0; i < EFFECT_COUNT; i++)
-        if (bits >> i & 1 && used < capacity) used += (size_t)snprintf(text + used, capacity - used, "%s%s", used ? "," : "", effects[i].name);
+        if (bits >> i & 1 && used < capacity)
+            used += (size_t)snprintf(text + used, capacity - used, "%s%s", used ? "," : "", effects[i].name);
 }
 
 static bool parse_one(uint32_t *bits, struct context *ctx, const char *name, size_t length) {

@@ -1,7 +1,7 @@
 // The plan: which effects a scene calls for, and because of what. The table of effects is EFFECTS in shaders/shared.h.
 //
-// An effect that is off is compiled out of the kernels by a specialization constant, its buffers are not made, and the reference skips it, too.
-// Each rule is one small function with the argument for its correctness beside it.
+// An effect that is off is compiled out of the kernels by a specialization constant, its buffers are not made, and the reference skips it,
+// too. Each rule is one small function with the argument for its correctness beside it.
 #ifndef EFFECTS_PLAN_H
 #define EFFECTS_PLAN_H
 
@@ -9,14 +9,14 @@
 #include "shaders/shared.h"
 
 struct plan {
-    uint32_t effects;                       // EFFECT_* bits that run
-    char because[EFFECT_COUNT][160];        // for people: why it runs, or why it is pruned
+    uint32_t effects;                // EFFECT_* bits that run
+    char because[EFFECT_COUNT][160]; // for people: why it runs, or why it is pruned
 };
 
 struct plan_params {
-    uint32_t spp;                           // samples per pixel in force
-    const char *disable;                    // comma-separated effect names to leave out [none]
-    bool no_prune;                          // everything on
+    uint32_t spp;        // samples per pixel in force
+    const char *disable; // comma-separated effect names to leave out [none]
+    bool no_prune;       // everything on
 };
 
 // Fails with GN_USAGE when `disable` names no effect; the message lists the names.

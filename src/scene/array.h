@@ -7,9 +7,9 @@
 // Zeroed but for item_size and what is empty; array_finish accepts that.
 struct array {
     void *items;
-    size_t count, capacity;     // items
-    size_t item_size;           // bytes
-    const char *what;           // for "no memory for <what>"
+    size_t count, capacity; // items
+    size_t item_size;       // bytes
+    const char *what;       // for "no memory for <what>"
 };
 
 // Makes room for `capacity` items in all.

@@ -38,8 +38,8 @@ static bool get_color(const struct aiMaterial *material, const char *key, float 
 }
 
 // Metal and roughness as Phong terms. With a = roughness², Blinn-Phong's exponent that resembles a microfacet lobe of width a is 2/a² - 2
-// (B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, 5.2); Phong's is a quarter of it. The peak grows with it
-// as the normalised lobe's does, up to 1. Reflectance at normal incidence is 0.04, or the base color for metals. We have no surroundings
+// (B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, 5.2); Phong's is a quarter of it. The peak grows with
+// it as the normalised lobe's does, up to 1. Reflectance at normal incidence is 0.04, or the base color for metals. We have no surroundings
 // for a metal to reflect: the rougher it is, the more it is drawn as a diffuse surface of its color instead.
 static void look_metal(struct scene_material *out, const float base[3], float metallic, float roughness) {
     const float a = fmaxf(roughness * roughness, 0.02f), exponent = 2 / (a * a) - 2;
@@ -96,7 +96,8 @@ bool look_camera(struct scene_camera *out, const struct aiCamera *camera, const 
     const double distance = fmax(1, length(position)) / length(view), up_length = length(up);
     for (int i = 0; i < 3; i++) look_at[i] = position[i] + distance * view[i], up[i] /= up_length;
     *out = (struct scene_camera){.fov_y_deg = (float)(fov * (180 / PI))};
-    return store(out->position, position) && store(out->look_at, look_at) && store(out->up, up) && out->fov_y_deg > 0 && out->fov_y_deg < 180;
+    return store(out->position, position) && store(out->look_at, look_at) && store(out->up, up) && out->fov_y_deg > 0 &&
+           out->fov_y_deg < 180;
 }
 
 bool look_light(struct scene_light *out, const struct aiLight *light, const struct transform *node) {

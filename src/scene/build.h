@@ -16,7 +16,8 @@ struct scene_build {
 bool scene_load_json(struct scene_build *build, const char *path);
 bool scene_load_model(struct scene_build *build, const char *path);
 
-// Moves a model's mesh into a shape, with the model's materials if it has any and `material` is NULL; else with *material, or with the default.
+// Moves a model's mesh into a shape, with the model's materials if it has any and `material` is NULL; else with *material, or with the
+// default.
 bool shape_take_model(struct scene_shape *shape, struct scene_build *build, struct model *model, const uint32_t *material);
 
 // Fills first_triangle, first_sphere and the bounds. GN_LIMIT when there are too many primitives.

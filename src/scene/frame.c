@@ -5,9 +5,9 @@
 #include <math.h>
 
 #define FOV_DEG 36.0
-#define AZIMUTH_DEG 30.0        // to the right of the front
+#define AZIMUTH_DEG 30.0 // to the right of the front
 #define ELEVATION_DEG 18.0
-#define MARGIN 1.04             // of the ball's apparent radius
+#define MARGIN 1.04 // of the ball's apparent radius
 
 static const double DEGREE = 3.14159265358979323846 / 180;
 
@@ -23,7 +23,8 @@ struct scene_ball scene_ball(const struct scene *scene) {
         for (int i = 0; i < 3; i++) ball.center[i] = 0.5 * ((double)scene->bounds_min[i] + scene->bounds_max[i]);
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         const struct scene_shape *shape = &scene->shapes[i];
-        if (shape->type == SHAPE_SPHERE) widen(&ball, shape->center, shape->radius);
+        if (shape->type == SHAPE_SPHERE)
+            widen(&ball, shape->center, shape->radius);
         else
             for (size_t k = 0; k < 3 * (size_t)shape->mesh.triangle_count; k++)
                 widen(&ball, shape->mesh.positions + 3 * (size_t)shape->mesh.indices[k], 0);
@@ -69,7 +70,10 @@ static void cross(double out[3], const double a[3], const double b[3]) {
 
 void frame_lights(struct scene_light lights[2], const struct scene_camera *camera, const struct scene_ball *ball) {
     // In units of the radius: to the right, up, and towards the camera.
-    static const struct { double place[3]; float intensity; } plan[2] = {{{-2.2, 3.0, 2.6}, 0.72f}, {{3.2, 0.6, 2.4}, 0.22f}};
+    static const struct {
+        double place[3];
+        float intensity;
+    } plan[2] = {{{-2.0, 2.6, 3.4}, 0.78f}, {{3.4, 0.4, 2.0}, 0.16f}};
     double back[3], up[3], right[3];
     for (int i = 0; i < 3; i++) back[i] = (double)camera->position[i] - camera->look_at[i], up[i] = camera->up[i];
     unit(back);

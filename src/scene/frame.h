@@ -5,7 +5,9 @@
 #include "scene/scene.h"
 
 // A sphere around all shapes.
-struct scene_ball { double center[3], radius; };
+struct scene_ball {
+    double center[3], radius;
+};
 struct scene_ball scene_ball(const struct scene *scene);
 
 // A three-quarter view from slightly above, the whole ball in the picture. up_axis: 1 for y, 2 for z. GN_SCENE when that is beyond fp32.

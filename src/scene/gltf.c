@@ -8,9 +8,9 @@
 #include "scene/gltf_buffers.h"
 #include "scene/mesh.h"
 
-#define MODE_TRIANGLES 4        // modes below are points and lines
-#define MOST_DEPTH 500          // of the tree of nodes: Assimp walks it by recursion
-#define SLACK 256               // zeros behind the buffer: Assimp wants a whole stride for the last element, too
+#define MODE_TRIANGLES 4 // modes below are points and lines
+#define MOST_DEPTH 500   // of the tree of nodes: Assimp walks it by recursion
+#define SLACK 256        // zeros behind the buffer: Assimp wants a whole stride for the last element, too
 #define LIGHTS "KHR_lights_punctual"
 
 struct gltf {
@@ -19,10 +19,10 @@ struct gltf {
     struct json_at root;
     struct gltf_buffers buffers;
     struct json_at extensions, lights_extension, lights; // lights.value is NULL when there are none
-    json_t *accessors, *views;  // of the GLB
-    uint64_t elements;          // of all accessors so far
-    uint32_t *parents;          // of each node its parent + 1, 0 for none
-    bool no_memory;             // jansson had none: some value is missing
+    json_t *accessors, *views;                           // of the GLB
+    uint64_t elements;                                   // of all accessors so far
+    uint32_t *parents;                                   // of each node its parent + 1, 0 for none
+    bool no_memory;                                      // jansson had none: some value is missing
 };
 
 // Adds a member or an item, whose reference it takes over.
@@ -32,7 +32,8 @@ static void put(struct gltf *gltf, json_t *container, const char *key, json_t *v
 }
 
 // A member that is the number of an item in a list of the root. *found is false when the member is missing.
-static bool get_index(const struct gltf *gltf, const struct json_at *object, const char *key, const char *list, uint32_t *index, bool *found) {
+static bool get_index(const struct gltf *gltf, const struct json_at *object, const char *key, const char *list, uint32_t *index,
+                      bool *found) {
     struct json_at member;
     const size_t count = json_array_size(json_object_get(gltf->root.value, list));
     *found = at_member(&member, object, key);
@@ -41,7 +42,9 @@ static bool get_index(const struct gltf *gltf, const struct json_at *object, con
 }
 
 // An item of a list of the root, which must be an object.
-struct item { struct json_at list, at; };
+struct item {
+    struct json_at list, at;
+};
 static bool get_item(struct item *out, const struct gltf *gltf, const char *list, uint32_t index) {
     at_member(&out->list, &gltf->root, list);
     out->at = at_item(&out->list, index);
@@ -68,9 +71,9 @@ static bool pack_list(json_t *out, struct gltf *gltf, const char *key, json_t *(
 // ---------------------------------------------------------------------------------------------------------------- accessors
 
 struct accessor {
-    size_t offset, stride;      // in the buffers, bytes
+    size_t offset, stride; // in the buffers, bytes
     uint32_t count;
-    uint32_t component;         // componentType
+    uint32_t component; // componentType
     const char *type;
 };
 
@@ -102,21 +105,23 @@ static bool check_view(struct accessor *out, const struct gltf *gltf, const stru
 }
 
 // The accessor that attribute `key` of an object names. `components` of type `type`; integers allowed instead of floats or not.
-static bool check_accessor(struct accessor *out, bool *found, struct gltf *gltf, const struct json_at *object, const char *key, const char *type,
-                           bool integers) {
+static bool check_accessor(struct accessor *out, bool *found, struct gltf *gltf, const struct json_at *object, const char *key,
+                           const char *type, bool integers) {
     struct item item;
     uint32_t number;
     struct json_at sparse;
     *out = (struct accessor){.type = type};
     if (!get_index(gltf, object, key, "accessors", &number, found) || !*found) return !*found;
     const char *actual = "";
-    if (!get_item(&item, gltf, "accessors", number) || !at_require(&item.at, "type", type) || !at_get_text(&item.at, "type", type, &actual) ||
-        !need_count(&item.at, "componentType", 5120, 5126, &out->component) || !need_count(&item.at, "count", 1, UINT32_MAX, &out->count))
+    if (!get_item(&item, gltf, "accessors", number) || !at_require(&item.at, "type", type) ||
+        !at_get_text(&item.at, "type", type, &actual) || !need_count(&item.at, "componentType", 5120, 5126, &out->component) ||
+        !need_count(&item.at, "count", 1, UINT32_MAX, &out->count))
         return false;
     const uint32_t c = out->component;
     if (strcmp(actual, type) != 0) return at_fail(&item.at, "is of type %s, expected %s for %s", actual, type, key);
     if (integers ? c != 5121 && c != 5123 && c != 5125 : c != 5126)
-        return at_fail(&item.at, "has componentType %u, expected %s for %s", c, integers ? "5121, 5123 or 5125 (unsigned integers)" : "5126 (floats)", key);
+        return at_fail(&item.at, "has componentType %u, expected %s for %s", c,
+                       integers ? "5121, 5123 or 5125 (unsigned integers)" : "5126 (floats)", key);
     if (at_member(&sparse, &item.at, "sparse")) return at_fail(&sparse, "is there, but sparse accessors are not supported");
     gltf->elements += out->count;
     if (gltf->elements > 3 * (uint64_t)MOST_PRIMITIVES) return fail(gltf->ctx, GN_LIMIT, "%s: has too many vertices", gltf->json.path);
@@ -266,7 +271,8 @@ static json_t *pack_camera(struct gltf *gltf, const struct json_at *at) {
 static json_t *pack_light(struct gltf *gltf, const struct json_at *at) {
     float color[3] = {1, 1, 1}, intensity = 1;
     if (!json_is_object(at->value)) return at_expected(at, "an object"), NULL;
-    if (!at_get_float3(at, "color", RANGE_NOT_NEGATIVE, color) || !at_get_float(at, "intensity", RANGE_NOT_NEGATIVE, &intensity)) return NULL;
+    if (!at_get_float3(at, "color", RANGE_NOT_NEGATIVE, color) || !at_get_float(at, "intensity", RANGE_NOT_NEGATIVE, &intensity))
+        return NULL;
     json_t *packed = json_object(), *packed_color = json_array();
     for (int i = 0; i < 3; i++) put(gltf, packed_color, NULL, json_real(color[i]));
     put(gltf, packed, "type", json_string("point"));
@@ -335,15 +341,16 @@ static bool pack_children(json_t *out, struct gltf *gltf, const struct json_at *
 // Only a point light is one of ours.
 static bool pack_node_light(json_t *out, struct gltf *gltf, const struct json_at *node) {
     struct json_at extensions, extension, light;
-    if (!at_member(&extensions, node, "extensions") || !at_member(&extension, &extensions, LIGHTS) || !at_member(&light, &extension, "light"))
+    if (!at_member(&extensions, node, "extensions") || !at_member(&extension, &extensions, LIGHTS) ||
+        !at_member(&light, &extension, "light"))
         return true;
     const json_int_t number = json_is_integer(light.value) ? json_integer_value(light.value) : -1;
     if (number < 0 || (size_t)number >= json_array_size(gltf->lights.value)) return at_expected(&light, "the number of a light");
     const json_t *kind = json_array_get(gltf->lights.value, (size_t)number);
     if (!is_kind(kind, "point")) {
         const char *type = json_string_value(json_object_get(kind, "type"));
-        notify(gltf->ctx, GN_LEVEL_WARNING, "%s: light %d is of type '%.40s', only point lights are supported; it is left out", gltf->json.path,
-               (int)number, type ? type : "?");
+        notify(gltf->ctx, GN_LEVEL_WARNING, "%s: light %d is of type '%.40s', only point lights are supported; it is left out",
+               gltf->json.path, (int)number, type ? type : "?");
         return true;
     }
     json_t *packed_extensions = json_object(), *packed = json_object();
@@ -366,8 +373,10 @@ static bool pack_node_parts(json_t *out, struct gltf *gltf, const struct json_at
         return false;
     if (has_mesh) put(gltf, out, "mesh", json_integer(mesh));
     if (!has_camera) return true;
-    if (is_kind(json_array_get(json_object_get(gltf->root.value, "cameras"), camera), "perspective")) put(gltf, out, "camera", json_integer(camera));
-    else notify(gltf->ctx, GN_LEVEL_WARNING, "%s: camera %u is not perspective; it is left out", gltf->json.path, camera);
+    if (is_kind(json_array_get(json_object_get(gltf->root.value, "cameras"), camera), "perspective"))
+        put(gltf, out, "camera", json_integer(camera));
+    else
+        notify(gltf->ctx, GN_LEVEL_WARNING, "%s: camera %u is not perspective; it is left out", gltf->json.path, camera);
     return true;
 }
 
@@ -385,7 +394,8 @@ static bool check_depth(const struct gltf *gltf, size_t count) {
         for (uint32_t up = gltf->parents[i]; up; up = gltf->parents[up - 1]) {
             if (++depth <= MOST_DEPTH) continue;
             struct item item;
-            return get_item(&item, gltf, "nodes", (uint32_t)i) && at_fail(&item.at, "is its own parent or has more than %d above it, expected a tree", MOST_DEPTH);
+            return get_item(&item, gltf, "nodes", (uint32_t)i) &&
+                   at_fail(&item.at, "is its own parent or has more than %d above it, expected a tree", MOST_DEPTH);
         }
     }
     return true;

@@ -9,7 +9,7 @@
 
 #define CHUNK_JSON 0x4e4f534au
 #define CHUNK_BIN 0x004e4942u
-#define MOST_BYTES UINT32_MAX   // of a GLB
+#define MOST_BYTES UINT32_MAX // of a GLB
 
 static uint32_t little_endian(const char *bytes) {
     const unsigned char *b = (const unsigned char *)bytes;
@@ -23,16 +23,19 @@ static bool chunk_at(struct gltf_span *out, const struct file_bytes *file, size_
     return out->size <= file->size - offset - 8;
 }
 
-bool gltf_container(struct gltf_span *json, struct gltf_span *binary, struct context *ctx, const char *path, const struct file_bytes *file) {
+bool gltf_container(struct gltf_span *json, struct gltf_span *binary, struct context *ctx, const char *path,
+                    const struct file_bytes *file) {
     *binary = (struct gltf_span){0};
     if (file->size < 4 || memcmp(file->data, "glTF", 4) != 0) {
         const size_t mark = strncmp(file->data, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
         *json = (struct gltf_span){file->data + mark, file->size - mark};
         return true;
     }
-    if (file->size < 12 || little_endian(file->data + 4) != 2) return fail(ctx, GN_SCENE, "%s: byte 4: is no GLB of version 2, expected one", path);
+    if (file->size < 12 || little_endian(file->data + 4) != 2)
+        return fail(ctx, GN_SCENE, "%s: byte 4: is no GLB of version 2, expected one", path);
     if (little_endian(file->data + 8) > file->size)
-        return fail(ctx, GN_SCENE, "%s: byte 8: the file is to have %u bytes, but it has %zu", path, little_endian(file->data + 8), file->size);
+        return fail(ctx, GN_SCENE, "%s: byte 8: the file is to have %u bytes, but it has %zu", path, little_endian(file->data + 8),
+                    file->size);
     if (!chunk_at(json, file, 12, CHUNK_JSON)) return fail(ctx, GN_SCENE, "%s: byte 12: no whole JSON chunk, expected one", path);
     const size_t next = 20 + (json->size + 3) / 4 * 4;
     if (next >= little_endian(file->data + 8)) return true;
@@ -102,7 +105,8 @@ static bool load_file(struct gltf_buffers *out, const struct json_at *at, const 
     percent_decode(path + (strlen(path) - strlen(uri)));
     const char *trouble = path_unreadable(path);
     struct file_bytes file = {0};
-    bool done = trouble ? at_fail(at, "is \"%s\", expected a file that can be read: %s", excerpt_word(uri).text, trouble) : file_read(&file, ctx, path, GN_SCENE);
+    bool done = trouble ? at_fail(at, "is \"%s\", expected a file that can be read: %s", excerpt_word(uri).text, trouble)
+                        : file_read(&file, ctx, path, GN_SCENE);
     if (done && file.size < size) done = at_fail(at, "is \"%s\" of %zu bytes, expected %zu", excerpt_word(uri).text, file.size, size);
     char *room = done ? append(out, ctx, size) : NULL;
     if (room) memcpy(room, file.data, size);

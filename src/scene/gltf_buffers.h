@@ -5,17 +5,22 @@
 #include "scene/array.h"
 #include "scene/json_read.h"
 
-struct gltf_span { const char *data; size_t size; };
+struct gltf_span {
+    const char *data;
+    size_t size;
+};
 
 // Finds the JSON and the binary chunk of a GLB; a file that is none is all JSON.
 bool gltf_container(struct gltf_span *json, struct gltf_span *binary, struct context *ctx, const char *path, const struct file_bytes *file);
 
 // All buffers one after the other, each at a multiple of 4. Zeroed is empty.
 struct gltf_buffers {
-    struct array bytes;         // char
-    struct array places;        // struct gltf_place, one for each buffer
+    struct array bytes;  // char
+    struct array places; // struct gltf_place, one for each buffer
 };
-struct gltf_place { size_t offset, size; };
+struct gltf_place {
+    size_t offset, size;
+};
 
 // Loads the buffers of a document: the binary chunk, data URIs, files beside it.
 bool gltf_buffers_init(struct gltf_buffers *out, const struct json_at *root, struct gltf_span binary);

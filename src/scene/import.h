@@ -10,12 +10,12 @@
 
 // What a model file holds. Zeroed is empty; model_finish accepts a half-made one.
 struct model {
-    struct scene_mesh mesh;             // one mesh of all faces, world space of the file; mesh.materials indexes `materials`
+    struct scene_mesh mesh; // one mesh of all faces, world space of the file; mesh.materials indexes `materials`, NULL: all have the first
     struct scene_material *materials;
     uint32_t material_count;
-    struct scene_camera *cameras;       // as far as the file has them
+    struct scene_camera *cameras; // as far as the file has them
     uint32_t camera_count;
-    struct scene_light *lights;
+    struct scene_light *lights; // intensities in the file's unit
     uint32_t light_count;
 };
 

@@ -12,12 +12,12 @@
 
 // What a walk looks for, and what it found.
 struct walk {
-    const char *at;             // in the text
-    const json_t *container;    // of the value looked for
+    const char *at;          // in the text
+    const json_t *container; // of the value looked for
     const char *key;
     size_t index;
     const char *key_at, *value_at; // found, or NULL
-    bool settle;                // settle roundings on the way
+    bool settle;                   // settle roundings on the way
 };
 
 static void skip_space(struct walk *walk) { walk->at += strspn(walk->at, " \t\r\n"); }
@@ -79,9 +79,15 @@ static void walk_value(struct walk *walk, json_t *value) {
     skip_space(walk);
     if (walk->value_at && !walk->settle) return; // found
     switch (json_typeof(value)) {
-    case JSON_OBJECT: walk_object(walk, value); break;
-    case JSON_ARRAY: walk_list(walk, value); break;
-    case JSON_STRING: skip_string(walk); break;
+    case JSON_OBJECT:
+        walk_object(walk, value);
+        break;
+    case JSON_ARRAY:
+        walk_list(walk, value);
+        break;
+    case JSON_STRING:
+        skip_string(walk);
+        break;
     default:
         if (walk->settle && json_is_real(value)) settle_rounding(walk->at, value);
         walk->at += strcspn(walk->at, " \t\r\n,]}");

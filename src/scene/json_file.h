@@ -10,9 +10,9 @@
 struct json_file {
     struct context *ctx;
     const char *path;
-    struct file_bytes bytes;    // of a file
-    const char *text;           // bytes.data behind a byte order mark
-    size_t size;                // of the text
+    struct file_bytes bytes; // of a file
+    const char *text;        // bytes.data behind a byte order mark
+    size_t size;             // of the text
     json_t *root;
 };
 

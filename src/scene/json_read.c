@@ -9,7 +9,9 @@
 #include "scene/text.h"
 #include "scene/words.h"
 
-struct json_at at_root(const struct json_file *file) { return (struct json_at){.file = file, .value = file->root}; }
+struct json_at at_root(const struct json_file *file) {
+    return (struct json_at){.file = file, .value = file->root};
+}
 
 struct json_at at_item(const struct json_at *list, size_t index) {
     return (struct json_at){.file = list->file, .parent = list, .index = index, .value = json_array_get(list->value, index)};
@@ -18,14 +20,18 @@ struct json_at at_item(const struct json_at *list, size_t index) {
 // ----------------------------------------------------------------------------------------------------------------- messages
 
 // The way from the root, e.g. "shapes[3].radius".
-struct way { char text[320]; };
+struct way {
+    char text[320];
+};
 
 static void way_append(struct way *way, const struct json_at *at) {
     if (!at->parent) return;
     way_append(way, at->parent);
     const size_t used = strlen(way->text), room = sizeof way->text - used;
-    if (at->key) snprintf(way->text + used, room, "%s%s", used ? "." : "", excerpt_word(at->key).text);
-    else snprintf(way->text + used, room, "[%zu]", at->index);
+    if (at->key)
+        snprintf(way->text + used, room, "%s%s", used ? "." : "", excerpt_word(at->key).text);
+    else
+        snprintf(way->text + used, room, "[%zu]", at->index);
 }
 
 static struct way way_to(const struct json_at *at) {
@@ -118,10 +124,14 @@ static const char *const range_texts[] = {
 
 static bool in_range(double value, enum json_range range) {
     switch (range) {
-    case RANGE_NOT_NEGATIVE: return value >= 0;
-    case RANGE_POSITIVE: return value > 0;
-    case RANGE_FIELD_OF_VIEW: return value > 0 && value < 180;
-    default: return true;
+    case RANGE_NOT_NEGATIVE:
+        return value >= 0;
+    case RANGE_POSITIVE:
+        return value > 0;
+    case RANGE_FIELD_OF_VIEW:
+        return value > 0 && value < 180;
+    default:
+        return true;
     }
 }
 

@@ -1,7 +1,7 @@
 // Reading the values of a JSON document, with messages that say where and what was expected.
 //
-// A `struct json_at` (functions at_…) is a value together with the way to it from the root; it lives on the reader's stack. Every function that can fail
-// reports GN_SCENE "file:line:column: shapes[3].radius is -1, expected a number greater than 0". Members are named by the
+// A `struct json_at` (functions at_…) is a value together with the way to it from the root; it lives on the reader's stack. Every function
+// that can fail reports GN_SCENE "file:line:column: shapes[3].radius is -1, expected a number greater than 0". Members are named by the
 // object they are in and their key; a missing optional member leaves *out as it is.
 #ifndef SCENE_JSON_READ_H
 #define SCENE_JSON_READ_H
@@ -11,8 +11,8 @@
 struct json_at {
     const struct json_file *file;
     const struct json_at *parent; // NULL: the root
-    const char *key;            // in the parent, or NULL:
-    size_t index;               // in the parent, a list
+    const char *key;              // in the parent, or NULL:
+    size_t index;                 // in the parent, a list
     json_t *value;
 };
 

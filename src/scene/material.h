@@ -10,10 +10,13 @@
 
 // Zeroed but for what array.h wants is empty: MATERIAL_TABLE.
 struct material_table {
-    struct array items;         // struct scene_material
-    struct json_t *numbers;     // jansson serves as the dictionary: from names to numbers
+    struct array items;     // struct scene_material
+    struct json_t *numbers; // jansson serves as the dictionary: from names to numbers
 };
-#define MATERIAL_TABLE {.items = {.item_size = sizeof(struct scene_material), .what = "materials"}}
+#define MATERIAL_TABLE                                                                                                                     \
+    {                                                                                                                                      \
+        .items = {.item_size = sizeof(struct scene_material), .what = "materials" }                                                        \
+    }
 
 // Whether there is a material of this name; *number is set if so.
 bool material_find(const struct material_table *table, const char *name, uint32_t *number);

@@ -16,8 +16,8 @@ void mesh_finish(struct scene_mesh *mesh) {
 bool mesh_init(struct scene_mesh *out, struct context *ctx, uint64_t vertices, uint64_t triangles, bool normals) {
     *out = (struct scene_mesh){0};
     if (vertices > UINT32_MAX || triangles > MOST_PRIMITIVES)
-        return fail(ctx, GN_LIMIT, "a mesh of %llu vertices and %llu triangles, at most %u and %u are possible", (unsigned long long)vertices,
-                    (unsigned long long)triangles, UINT32_MAX, MOST_PRIMITIVES);
+        return fail(ctx, GN_LIMIT, "a mesh of %llu vertices and %llu triangles, at most %u and %u are possible",
+                    (unsigned long long)vertices, (unsigned long long)triangles, UINT32_MAX, MOST_PRIMITIVES);
     out->positions = array_alloc(ctx, vertices, 3 * sizeof *out->positions, "vertices");
     out->indices = array_alloc(ctx, triangles, 3 * sizeof *out->indices, "triangles");
     if (normals) out->normals = array_alloc(ctx, vertices, 3 * sizeof *out->normals, "normals");
@@ -32,7 +32,8 @@ bool mesh_init(struct scene_mesh *out, struct context *ctx, uint64_t vertices, u
 
 bool mesh_count_allowed(struct context *ctx, const char *path, uint64_t triangles) {
     if (triangles <= MOST_PRIMITIVES) return true;
-    return fail(ctx, GN_LIMIT, "%s: has %llu triangles or more, at most %u are possible", path, (unsigned long long)triangles, MOST_PRIMITIVES);
+    return fail(ctx, GN_LIMIT, "%s: has %llu triangles or more, at most %u are possible", path, (unsigned long long)triangles,
+                MOST_PRIMITIVES);
 }
 
 const struct transform transform_identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
@@ -104,7 +105,7 @@ bool mesh_transform(struct scene_mesh *mesh, const struct transform *transform, 
             *bad = i;
             return false;
         }
-        if (mesh->normals) transform_normal(mesh->normals + 3 * (size_t)i, (const double (*)[3])c, determinant < 0 ? -1 : 1);
+        if (mesh->normals) transform_normal(mesh->normals + 3 * (size_t)i, (const double(*)[3])c, determinant < 0 ? -1 : 1);
     }
     return true;
 }

@@ -16,13 +16,15 @@ bool mesh_init(struct scene_mesh *out, struct context *ctx, uint64_t vertices, u
 bool mesh_count_allowed(struct context *ctx, const char *path, uint64_t triangles);
 
 // An affine transform in fp64: point p becomes m·(p, 1), row-major, the last row 0 0 0 1.
-struct transform { double m[4][4]; };
+struct transform {
+    double m[4][4];
+};
 
 extern const struct transform transform_identity;
 struct transform transform_product(const struct transform *a, const struct transform *b);
 
-// Transforms vertices [first, first + count) in fp64 and rounds each coordinate once; normals go by the inverse transpose (up to a positive factor; a
-// mirror image keeps them on the same side of the surface). Returns false, and *bad, when a vertex leaves the range of fp32.
+// Transforms vertices [first, first + count) in fp64 and rounds each coordinate once; normals go by the inverse transpose (up to a positive
+// factor; a mirror image keeps them on the same side of the surface). Returns false, and *bad, when a vertex leaves the range of fp32.
 bool mesh_transform(struct scene_mesh *mesh, const struct transform *transform, uint32_t first, uint32_t count, uint32_t *bad);
 
 // How far the 3×3 part is from singular: Frobenius norm times that of its inverse; 3 for rotations, +inf for singular or not finite.

@@ -1,5 +1,5 @@
-// Meshes by way of Assimp: glTF, repacked first, and whatever else it reads. All meshes of all nodes become one, depth first; polygons are fanned
-// here, points and lines left out.
+// Meshes by way of Assimp: glTF, repacked first, and whatever else it reads. All meshes of all nodes become one, depth first; polygons are
+// fanned here, points and lines left out.
 #include "scene/import.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "scene/material.h"
 #include "scene/words.h"
 
-#define MOST_DEPTH 1000         // of the tree of nodes
+#define MOST_DEPTH 1000 // of the tree of nodes
 #define MOST_LIGHTS 1024
 #define MOST_CAMERAS 16
 #define NO_MATERIAL UINT32_MAX
@@ -23,12 +23,12 @@ struct import {
     const char *path;
     const struct aiScene *scene;
     bool gltf;
-    bool filling;               // the second walk
+    bool filling;                 // the second walk
     uint64_t vertices, triangles; // counted, or filled so far
     bool has_normals;
     struct scene_mesh *mesh;
     struct material_table materials;
-    uint32_t *material_numbers; // of Assimp's materials ours, or NO_MATERIAL
+    uint32_t *material_numbers;                      // of Assimp's materials ours, or NO_MATERIAL
     struct transform cameras[MOST_CAMERAS], *lights; // of the nodes they hang on
     unsigned camera_count, light_count;
 };
@@ -110,14 +110,14 @@ static bool fill_mesh(struct import *import, const struct aiMesh *mesh, const st
     uint32_t bad;
     const uint32_t first = (uint32_t)import->vertices;
     if (mesh->mMaterialIndex >= import->scene->mNumMaterials)
-        return fail(import->ctx, GN_SCENE, "%s: mesh '%s' has material %u, expected less than %u", import->path, excerpt_word(mesh->mName.data).text,
-                    mesh->mMaterialIndex, import->scene->mNumMaterials);
+        return fail(import->ctx, GN_SCENE, "%s: mesh '%s' has material %u, expected less than %u", import->path,
+                    excerpt_word(mesh->mName.data).text, mesh->mMaterialIndex, import->scene->mNumMaterials);
     if (!fill_vertices(import, mesh) || !fill_triangles(import, mesh)) return false;
     import->vertices += mesh->mNumVertices;
     if (memcmp(to_world, &transform_identity, sizeof *to_world) == 0) return true;
     return mesh_transform(import->mesh, to_world, first, mesh->mNumVertices, &bad) ||
-           fail(import->ctx, GN_SCENE, "%s: the node of mesh '%s' takes vertex %u out of the range of fp32, expected smaller numbers", import->path,
-                excerpt_word(mesh->mName.data).text, bad - first);
+           fail(import->ctx, GN_SCENE, "%s: the node of mesh '%s' takes vertex %u out of the range of fp32, expected smaller numbers",
+                import->path, excerpt_word(mesh->mName.data).text, bad - first);
 }
 
 // ---------------------------------------------------------------------------------------------------------------- the tree
@@ -139,7 +139,8 @@ static bool walk(struct import *import, const struct aiNode *node, const struct 
     if (import->filling) note_transforms(import, node, &to_world);
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
         if (node->mMeshes[i] >= import->scene->mNumMeshes)
-            return fail(import->ctx, GN_SCENE, "%s: a node has mesh %u, expected less than %u", import->path, node->mMeshes[i], import->scene->mNumMeshes);
+            return fail(import->ctx, GN_SCENE, "%s: a node has mesh %u, expected less than %u", import->path, node->mMeshes[i],
+                        import->scene->mNumMeshes);
         const struct aiMesh *mesh = import->scene->mMeshes[node->mMeshes[i]];
         if (!(import->filling ? fill_mesh(import, mesh, &to_world) : count_mesh(import, mesh))) return false;
     }
@@ -156,8 +157,10 @@ static bool take_cameras(struct model *out, struct import *import) {
     for (unsigned i = 0; i < import->camera_count; i++) {
         struct aiCamera camera = *import->scene->mCameras[i];
         if (import->gltf) camera.mPosition = (struct aiVector3D){0, 0, 0}; // Assimp has the node's translation there once more
-        if (look_camera(&out->cameras[out->camera_count], &camera, &import->cameras[i])) out->camera_count++;
-        else notify(import->ctx, GN_LEVEL_WARNING, "%s: camera %u cannot be used; it is left out", import->path, i);
+        if (look_camera(&out->cameras[out->camera_count], &camera, &import->cameras[i]))
+            out->camera_count++;
+        else
+            notify(import->ctx, GN_LEVEL_WARNING, "%s: camera %u cannot be used; it is left out", import->path, i);
     }
     return true;
 }
@@ -166,18 +169,21 @@ static bool take_lights(struct model *out, struct import *import) {
     out->lights = array_alloc(import->ctx, import->light_count, sizeof *out->lights, "lights");
     if (!out->lights) return false;
     for (unsigned i = 0; i < import->light_count; i++) {
-        if (look_light(&out->lights[out->light_count], import->scene->mLights[i], &import->lights[i])) out->light_count++;
-        else notify(import->ctx, GN_LEVEL_WARNING, "%s: light %u is no point light that can be used; it is left out", import->path, i);
+        if (look_light(&out->lights[out->light_count], import->scene->mLights[i], &import->lights[i]))
+            out->light_count++;
+        else
+            notify(import->ctx, GN_LEVEL_WARNING, "%s: light %u is no point light that can be used; it is left out", import->path, i);
     }
     if (import->scene->mNumLights > import->light_count)
-        notify(import->ctx, GN_LEVEL_WARNING, "%s: has %u lights; only %u are used", import->path, import->scene->mNumLights, import->light_count);
+        notify(import->ctx, GN_LEVEL_WARNING, "%s: has %u lights; only %u are used", import->path, import->scene->mNumLights,
+               import->light_count);
     return true;
 }
 
 static bool prepare_look(struct import *import) {
     const struct aiScene *scene = import->scene;
     import->camera_count = scene->mNumCameras < MOST_CAMERAS ? scene->mNumCameras : MOST_CAMERAS;
-    import->light_count = scene->mNumLights < MOST_LIGHTS ? scene->mNumLights : MOST_LIGHTS;
+    import->light_count = scene->mNumLights < MOST_LIGHTS ? scene->mNumLights     : MOST_LIGHTS;
     import->lights = array_alloc(import->ctx, import->light_count, sizeof *import->lights, "lights");
     import->material_numbers = array_alloc(import->ctx, scene->mNumMaterials, sizeof *import->material_numbers, "materials");
     if (!import->lights || !import->material_numbers) return false;
@@ -220,7 +226,8 @@ static const struct aiScene *read_scene(struct context *ctx, const char *path, b
     struct file_bytes glb = {0};
     if (gltf && !gltf_repack(&glb, ctx, path)) return NULL;
     if (!gltf && aiIsExtensionSupported(strrchr(path, '.') ? strrchr(path, '.') : "") != AI_TRUE) {
-        fail(ctx, GN_SCENE, "%s: is no file that can be read, expected .json, .obj, .ply, .stl, .gltf, .glb, or what Assimp reads", path);
+        fail(ctx, GN_SCENE,
+             "%s: is no scene (.json) and no model that can be read, expected .obj, .ply, .stl, .gltf, .glb, or what Assimp reads", path);
         return NULL;
     }
     if (!progress(ctx, "scene", 0, -1)) {
@@ -235,7 +242,8 @@ static const struct aiScene *read_scene(struct context *ctx, const char *path, b
 
 bool model_load_assimp(struct model *out, struct context *ctx, const char *path) {
     *out = (struct model){0};
-    struct import import = {.ctx = ctx, .path = path, .gltf = is_suffix(path, "gltf") || is_suffix(path, "glb"), .materials = MATERIAL_TABLE};
+    struct import import = {
+        .ctx = ctx, .path = path, .gltf = is_suffix(path, "gltf") || is_suffix(path, "glb"), .materials = MATERIAL_TABLE};
     import.scene = read_scene(ctx, path, import.gltf);
     if (!import.scene) return false;
     const bool done = take_scene(out, &import);

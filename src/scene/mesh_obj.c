@@ -20,24 +20,31 @@
 
 #define NO_NORMAL UINT32_MAX
 
-struct corner { uint32_t position, normal; };   // numbers from 0
+struct corner {
+    uint32_t position, normal;
+}; // numbers from 0
 
 // From this triangle on, faces have this material.
-struct material_switch { uint32_t triangle, material; };
+struct material_switch {
+    uint32_t triangle, material;
+};
 
 // The largest number that a face used so far: whether there is such a vertex is known at the end only.
-struct reach { int64_t number; const char *at; };
+struct reach {
+    int64_t number;
+    const char *at;
+};
 
 struct obj {
     struct text text;
     struct array positions, normals; // 3 floats each
-    struct array corners;       // 3 struct corner for each triangle
-    struct array switches;      // struct material_switch
-    struct array libraries;     // char *, paths
+    struct array corners;            // 3 struct corner for each triangle
+    struct array switches;           // struct material_switch
+    struct array libraries;          // char *, paths
     struct material_table materials;
     struct reach position_reach, normal_reach;
-    bool has_normals;           // a face uses one
-    bool warned;                // of an unknown statement
+    bool has_normals; // a face uses one
+    bool warned;      // of an unknown statement
 };
 
 // ------------------------------------------------------------------------------------------------------------------ geometry
@@ -77,8 +84,10 @@ static bool read_corner(struct corner *out, struct obj *obj) {
     if (at && *at == '/') {
         const char *next = number_i64(&texture, ++at);
         if (next) at = next;
-        if (*at == '/') at = number_i64(&normal, normal_at = at + 1);
-        else if (!next) at = NULL;
+        if (*at == '/')
+            at = number_i64(&normal, normal_at = at + 1);
+        else if (!next)
+            at = NULL;
     }
     if (at != end) return text_expected(text, text->at, "a vertex: v, v/vt, v//vn or v/vt/vn");
     text->at = end;
@@ -125,8 +134,10 @@ static bool add_library(struct obj *obj, const char *name, const char *at) {
     const char *trouble = path_unreadable(path);
     if (trouble) text_warn(&obj->text, at, "material library %s cannot be read: %s; default materials are used", path, trouble);
     char **library = trouble ? NULL : array_push(&obj->libraries, obj->text.ctx);
-    if (library) *library = path;
-    else free(path);
+    if (library)
+        *library = path;
+    else
+        free(path);
     return trouble || library;
 }
 
@@ -155,8 +166,8 @@ static bool read_mtllib(struct obj *obj) {
 
 // Statements without a bearing on the picture.
 static bool is_ignored(struct text *text) {
-    static const char *const words[] = {"vt", "g", "o", "s", "l", "p", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib",
-                                        "shadow_obj", "trace_obj"};
+    static const char *const words[] = {"vt",    "g",        "o",        "s",   "l",      "p",      "vp",         "mg",
+                                        "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib", "shadow_obj", "trace_obj"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (text_accept(text, words[i])) return true;
     return false;
@@ -173,7 +184,8 @@ static bool read_statement(struct obj *obj) {
     if (text_accept(text, "mtllib")) return read_mtllib(obj);
     if (text_line_ends(text) || is_ignored(text) || obj->warned) return true;
     obj->warned = true;
-    text_warn(text, text->at, "statement '%s' is not known; it and others like it are skipped", excerpt_make(text->at, text_word(text)).text);
+    text_warn(text, text->at, "statement '%s' is not known; it and others like it are skipped",
+              excerpt_make(text->at, text_word(text)).text);
     return true;
 }
 

@@ -1,5 +1,5 @@
-// Meshes from PLY files: ascii, or binary in either byte order. Elements and properties that we have no use for are skipped, whatever they are.
-// Source: G. Turk, "The PLY Polygon File Format", 1994.
+// Meshes from PLY files: ascii, or binary in either byte order. Elements and properties that we have no use for are skipped, whatever they
+// are. Source: G. Turk, "The PLY Polygon File Format", 1994.
 #include "scene/import.h"
 
 #include <float.h>
@@ -20,14 +20,14 @@ struct ply {
     const struct ply_element *element; // being read
     uint64_t row;
     struct scene_mesh *mesh;
-    struct array triangles;     // 3 vertex numbers each
+    struct array triangles; // 3 vertex numbers each
 };
 
 // Reports a fault at `at`: "file:line:column" in a text, "file: byte N" in a binary file.
 static bool ply_fail(const struct ply *ply, const char *at, const char *message) {
     char where[160];
-    snprintf(where, sizeof where, "%.*s %llu of %llu: %s", (int)(ply->element->name.size < 40 ? ply->element->name.size : 40), ply->element->name.at,
-             (unsigned long long)ply->row, (unsigned long long)ply->element->count, message);
+    snprintf(where, sizeof where, "%.*s %llu of %llu: %s", (int)(ply->element->name.size < 40 ? ply->element->name.size : 40),
+             ply->element->name.at, (unsigned long long)ply->row, (unsigned long long)ply->element->count, message);
     if (ply->header.format == PLY_ASCII) return text_fail(&ply->text, at, "%s", where);
     return fail(ply->text.ctx, GN_SCENE, "%s: byte %zu: %s", ply->text.path, (size_t)(at - ply->text.begin), where);
 }
@@ -52,12 +52,20 @@ static double value_of_bits(enum ply_type type, uint64_t bits) {
     double real;
     const uint32_t low = (uint32_t)bits;
     switch (type) {
-    case PLY_INT8: return (double)((int64_t)(bits ^ 0x80) - 0x80); // the sign bit counts negative
-    case PLY_INT16: return (double)((int64_t)(bits ^ 0x8000) - 0x8000);
-    case PLY_INT32: return (double)((int64_t)(bits ^ 0x80000000u) - INT64_C(0x80000000));
-    case PLY_FLOAT32: memcpy(&single, &low, sizeof single); return single;
-    case PLY_FLOAT64: memcpy(&real, &bits, sizeof real); return real;
-    default: return (double)bits;
+    case PLY_INT8:
+        return (double)((int64_t)(bits ^ 0x80) - 0x80); // the sign bit counts negative
+    case PLY_INT16:
+        return (double)((int64_t)(bits ^ 0x8000) - 0x8000);
+    case PLY_INT32:
+        return (double)((int64_t)(bits ^ 0x80000000u) - INT64_C(0x80000000));
+    case PLY_FLOAT32:
+        memcpy(&single, &low, sizeof single);
+        return single;
+    case PLY_FLOAT64:
+        memcpy(&real, &bits, sizeof real);
+        return real;
+    default:
+        return (double)bits;
     }
 }
 
@@ -129,12 +137,14 @@ static bool find_roles(unsigned char *roles, bool has[6], const struct ply *ply,
         const struct ply_property *property = ply_property_at(&ply->header, element->first + i);
         unsigned char k = 0;
         while (k < 6 && !ply_word_is(property->name, vertex_names[k])) k++;
-        if (k < 6 && property->is_list) return text_fail(&ply->text, property->name.at, "property %s is a list, expected a number", vertex_names[k]);
+        if (k < 6 && property->is_list)
+            return text_fail(&ply->text, property->name.at, "property %s is a list, expected a number", vertex_names[k]);
         roles[i] = k;
         if (k < 6) has[k] = true;
     }
     for (int k = 0; k < 3; k++)
-        if (!has[k]) return text_fail(&ply->text, element->name.at, "the vertices have no property %s, expected x, y and z", vertex_names[k]);
+        if (!has[k])
+            return text_fail(&ply->text, element->name.at, "the vertices have no property %s, expected x, y and z", vertex_names[k]);
     return true;
 }
 
@@ -142,7 +152,8 @@ static bool read_vertex(struct ply *ply, const unsigned char *roles) {
     float values[7] = {0};
     for (size_t i = 0; i < ply->element->property_count; i++) {
         const struct ply_property *property = ply_property_at(&ply->header, ply->element->first + i);
-        if (roles[i] == 6 ? !skip_property(ply, property) : !next_float(ply, property->type, &values[roles[i]], vertex_names[roles[i]])) return false;
+        if (roles[i] == 6 ? !skip_property(ply, property) : !next_float(ply, property->type, &values[roles[i]], vertex_names[roles[i]]))
+            return false;
     }
     memcpy(ply->mesh->positions + 3 * ply->row, values, 3 * sizeof(float));
     if (ply->mesh->normals) memcpy(ply->mesh->normals + 3 * ply->row, values + 3, 3 * sizeof(float));
@@ -184,7 +195,8 @@ static bool read_polygon(struct ply *ply, const struct ply_property *list, uint6
         start = ply->text.at;
         if (!next_integer(ply, list->type, &index, "number of a vertex")) return false;
         if (index < 0 || (uint64_t)index >= vertex_count) {
-            snprintf(message, sizeof message, "there is no vertex %lld, expected 0 to %llu", (long long)index, (unsigned long long)vertex_count - 1);
+            snprintf(message, sizeof message, "there is no vertex %lld, expected 0 to %llu", (long long)index,
+                     (unsigned long long)vertex_count - 1);
             return ply_fail(ply, start, message);
         }
         if (i >= 2) {
@@ -235,7 +247,8 @@ static bool read_elements(struct ply *ply) {
     const struct ply_element *vertices = ply_element_find(header, "vertex"), *faces = ply_element_find(header, "face");
     if (!vertices) return text_fail(&ply->text, ply->text.begin, "the file has no vertices, expected an element 'vertex'");
     if (!faces && ply_element_find(header, "tristrips"))
-        return text_fail(&ply->text, ply_element_find(header, "tristrips")->name.at, "triangle strips are not supported, expected an element 'face'");
+        return text_fail(&ply->text, ply_element_find(header, "tristrips")->name.at,
+                         "triangle strips are not supported, expected an element 'face'");
     if (!faces || faces->count == 0 || vertices->count == 0)
         return text_fail(&ply->text, faces ? faces->name.at : ply->text.begin, "the file has no triangles, expected faces and vertices");
     const struct ply_element *last = vertices > faces ? vertices : faces;

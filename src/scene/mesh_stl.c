@@ -13,8 +13,8 @@
 #include "scene/mesh.h"
 #include "scene/text.h"
 
-#define HEADER_SIZE 84          // 80 bytes of anything, then the number of facets
-#define FACET_SIZE 50           // normal, three vertices, two bytes of attributes
+#define HEADER_SIZE 84 // 80 bytes of anything, then the number of facets
+#define FACET_SIZE 50  // normal, three vertices, two bytes of attributes
 
 static uint32_t little_endian(const char *bytes) {
     const unsigned char *b = (const unsigned char *)bytes;
@@ -36,11 +36,12 @@ static void number_vertices(struct scene_mesh *mesh) {
 
 static bool read_binary(struct model *out, struct text *text) {
     const uint64_t size = (uint64_t)(text->end - text->begin);
-    if (size < HEADER_SIZE) return fail(text->ctx, GN_SCENE, "%s: is no STL file: %llu bytes, expected at least 84", text->path, (unsigned long long)size);
+    if (size < HEADER_SIZE)
+        return fail(text->ctx, GN_SCENE, "%s: is no STL file: %llu bytes, expected at least 84", text->path, (unsigned long long)size);
     const uint64_t count = little_endian(text->begin + 80);
     if (size < HEADER_SIZE + FACET_SIZE * count)
-        return fail(text->ctx, GN_SCENE, "%s: byte 80: %llu facets take %llu bytes, but the file has %llu", text->path, (unsigned long long)count,
-                    (unsigned long long)(HEADER_SIZE + FACET_SIZE * count), (unsigned long long)size);
+        return fail(text->ctx, GN_SCENE, "%s: byte 80: %llu facets take %llu bytes, but the file has %llu", text->path,
+                    (unsigned long long)count, (unsigned long long)(HEADER_SIZE + FACET_SIZE * count), (unsigned long long)size);
     if (!mesh_count_allowed(text->ctx, text->path, count) || !mesh_init(&out->mesh, text->ctx, 3 * count, count, false)) return false;
     for (uint64_t i = 0; i < count; i++) {
         text->at = text->begin + HEADER_SIZE + FACET_SIZE * i;

@@ -49,8 +49,10 @@ static bool read_color(struct mtl *mtl, float *color) {
     for (int i = 0; i < 3; i++) {
         text_skip_blanks(&mtl->text);
         start = mtl->text.at;
-        if (i > 0 && text_line_ends(&mtl->text)) values[i] = values[0];
-        else if (!text_float(&mtl->text, &values[i], names[i])) return false;
+        if (i > 0 && text_line_ends(&mtl->text))
+            values[i] = values[0];
+        else if (!text_float(&mtl->text, &values[i], names[i]))
+            return false;
         if (values[i] < 0) return text_fail(&mtl->text, start, "%s is %g, expected at least 0", names[i], (double)values[i]);
     }
     if (mtl->material) memcpy(color, values, sizeof values);
@@ -83,7 +85,8 @@ bool mtl_load(struct material_table *table, bool *defined, struct context *ctx, 
     if (!file_read(&bytes, ctx, path, GN_SCENE)) return false;
     struct mtl mtl = {
         .text = {.ctx = ctx, .path = path, .begin = bytes.data, .at = bytes.data, .end = bytes.data + bytes.size},
-        .table = table, .defined = defined,
+        .table = table,
+        .defined = defined,
     };
     bool done = true;
     while (done && mtl.text.at < mtl.text.end) {

@@ -1,8 +1,8 @@
 // Vertex normals where a file has none.
 //
-// Around each distinct position stands a ring of faces. Faces that share an edge there and meet by less than the crease angle are joined; each
-// group of joined faces becomes one vertex. Its normal is the sum of the faces' unit normals, each weighted by the angle that the face has at the vertex
-// (G. Thürmer and C. A. Wüthrich, "Computing vertex normals from polygonal facets", 1998): how a flat region is cut into
+// Around each distinct position stands a ring of faces. Faces that share an edge there and meet by less than the crease angle are joined;
+// each group of joined faces becomes one vertex. Its normal is the sum of the faces' unit normals, each weighted by the angle that the face
+// has at the vertex (G. Thürmer and C. A. Wüthrich, "Computing vertex normals from polygonal facets", 1998): how a flat region is cut into
 // triangles then changes nothing. Rings are independent: all cores work on them, and the result does not depend on how many.
 #include "scene/mesh.h"
 
@@ -17,27 +17,32 @@ static const double PI = 3.14159265358979323846;
 
 // One face seen from the vertex in its middle.
 struct spoke {
-    double normal[3];           // unit; 0 for a degenerate face
-    double angle;               // radians
-    uint32_t parent;            // union-find over the ring
-    uint32_t group;             // number within the ring
+    double normal[3]; // unit; 0 for a degenerate face
+    double angle;     // radians
+    uint32_t parent;  // union-find over the ring
+    uint32_t group;   // number within the ring
 };
 
 // One edge of a face of the ring that ends at the middle.
-struct rim { uint32_t vertex, spoke; };
+struct rim {
+    uint32_t vertex, spoke;
+};
 
 struct smoothing {
     const struct scene_mesh *mesh;
-    const uint32_t *number;     // of each vertex's distinct position
-    uint32_t ring_count;        // distinct positions
-    uint32_t *ring_first;       // ring_count + 1; ring r has corners[ring_first[r] …]
-    uint32_t *corners;          // 3 × triangle_count: 3 · triangle + corner, by ring, ascending
-    uint32_t *groups;           // for each entry of corners its group within the ring
-    uint32_t *vertex_first;     // ring_count + 1: groups of the rings before
-    struct scene_mesh out;      // what is being made
-    double least_cosine;        // of two faces that are joined
+    const uint32_t *number; // of each vertex's distinct position
+    uint32_t ring_count;    // distinct positions
+    uint32_t *ring_first;   // ring_count + 1; ring r has corners[ring_first[r] …]
+    uint32_t *corners;      // 3 × triangle_count: 3 · triangle + corner, by ring, ascending
+    uint32_t *groups;       // for each entry of corners its group within the ring
+    uint32_t *vertex_first; // ring_count + 1: groups of the rings before
+    struct scene_mesh out;  // what is being made
+    double least_cosine;    // of two faces that are joined
     unsigned threads;
-    struct scratch { struct spoke *spokes; struct rim *rims; } *scratch; // for each thread, as long as the longest ring needs
+    struct scratch {
+        struct spoke *spokes;
+        struct rim *rims;
+    } * scratch; // for each thread, as long as the longest ring needs
 };
 
 static void sub(double out[3], const float *a, const float *b) {
@@ -73,8 +78,10 @@ static uint32_t root(struct spoke *spokes, uint32_t i) {
 // The root of a group is its first spoke.
 static void join(struct spoke *spokes, uint32_t a, uint32_t b) {
     a = root(spokes, a), b = root(spokes, b);
-    if (a < b) spokes[b].parent = a;
-    else spokes[a].parent = b;
+    if (a < b)
+        spokes[b].parent = a;
+    else
+        spokes[a].parent = b;
 }
 
 static int by_vertex(const void *a, const void *b) {

@@ -1,6 +1,6 @@
-// Decimal to fp32, rounded once. Based on W. D. Clinger, "How to read floating point numbers accurately", 1990: where digits and power of ten are
-// both exact in fp64, one operation gives the nearest fp64; and the fp32 nearest to that is right unless it stood midway between two floats.
-// Whatever is not that easy goes to strtof, as integer digits with an exponent, so that no locale has a say.
+// Decimal to fp32, rounded once. Based on W. D. Clinger, "How to read floating point numbers accurately", 1990: where digits and power of
+// ten are both exact in fp64, one operation gives the nearest fp64; and the fp32 nearest to that is right unless it stood midway between
+// two floats. Whatever is not that easy goes to strtof, as integer digits with an exponent, so that no locale has a say.
 #include "scene/number.h"
 
 #include <float.h>
@@ -17,9 +17,9 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 // ±mantissa × 10^exponent. `cut`: digits other than 0 were left out of the mantissa.
 struct decimal {
     bool negative, cut;
-    uint64_t mantissa;          // the first 19 digits or so
+    uint64_t mantissa; // the first 19 digits or so
     int64_t exponent;
-    const char *digits;         // first digit or point
+    const char *digits; // first digit or point
 };
 
 // The exponent behind the digits, if one is there; "1e" and "1e+" are the number 1 and a rest.
@@ -88,8 +88,10 @@ static float decimal_round_slowly(const struct decimal *decimal) {
     bool more = false;
     for (const char *p = decimal->digits; is_digit(*p) || *p == '.'; p++) {
         if (*p == '.' || (length == 0 && *p == '0')) continue;
-        if (length < MOST_DIGITS) text[length++] = *p;
-        else more |= *p != '0';
+        if (length < MOST_DIGITS)
+            text[length++] = *p;
+        else
+            more |= *p != '0';
     }
     if (length == 0) return 0;
     for (uint64_t m = decimal->mantissa; m; m /= 10) kept++;

@@ -5,9 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Reads the decimal number that starts at `at` (sign, digits with a point, exponent) and rounds it once. Returns the first byte behind it, or
-// NULL when there is no number. "nan" and "inf" are numbers; what is beyond the range of fp32 becomes infinite. The text must end
-// with a byte that is no part of a number, such as 0.
+// Reads the decimal number that starts at `at` (sign, digits with a point, exponent) and rounds it once. Returns the first byte behind it,
+// or NULL when there is no number. "nan" and "inf" are numbers; what is beyond the range of fp32 becomes infinite. The text must end with a
+// byte that is no part of a number, such as 0.
 const char *number_f32(float *out, const char *at);
 
 // Reads a decimal integer; what does not fit is cut to INT64_MIN or INT64_MAX. NULL when there is none.

@@ -6,9 +6,12 @@
 #include "scene/number.h"
 #include "scene/words.h"
 
-static const struct { const char *name, *new_name; unsigned size; } types[PLY_TYPE_COUNT] = {
-    [PLY_INT8] = {"char", "int8", 1},     [PLY_UINT8] = {"uchar", "uint8", 1},      [PLY_INT16] = {"short", "int16", 2},
-    [PLY_UINT16] = {"ushort", "uint16", 2}, [PLY_INT32] = {"int", "int32", 4},      [PLY_UINT32] = {"uint", "uint32", 4},
+static const struct {
+    const char *name, *new_name;
+    unsigned size;
+} types[PLY_TYPE_COUNT] = {
+    [PLY_INT8] = {"char", "int8", 1},        [PLY_UINT8] = {"uchar", "uint8", 1},      [PLY_INT16] = {"short", "int16", 2},
+    [PLY_UINT16] = {"ushort", "uint16", 2},  [PLY_INT32] = {"int", "int32", 4},        [PLY_UINT32] = {"uint", "uint32", 4},
     [PLY_FLOAT32] = {"float", "float32", 4}, [PLY_FLOAT64] = {"double", "float64", 8},
 };
 
@@ -42,17 +45,17 @@ uint64_t ply_row_size(const struct ply_header *header, const struct ply_element 
 
 // -------------------------------------------------------------------------------------------------------------------- lines
 
-#define MOST_WORDS 6            // more on a line are not looked at
+#define MOST_WORDS 6 // more on a line are not looked at
 #define MOST_ELEMENTS 256
-#define MOST_PROPERTIES 1024    // of all elements
+#define MOST_PROPERTIES 1024 // of all elements
 
 struct line {
     struct ply_word words[MOST_WORDS]; // a missing one has size 0 and stands at the line's end
     size_t count;
 };
 
-// Cuts the line at text->at into words and moves behind its end. With `crlf`, "\r\n" ends lines; else a '\r' or a '\n' alone does: in a binary
-// file the byte behind a lone '\r' is data.
+// Cuts the line at text->at into words and moves behind its end. With `crlf`, "\r\n" ends lines; else a '\r' or a '\n' alone does: in a
+// binary file the byte behind a lone '\r' is data.
 static void line_read(struct line *out, struct text *text, bool crlf) {
     const char *end = text->at + strcspn(text->at, "\r\n");
     out->count = 0;
@@ -90,7 +93,8 @@ static bool read_element(struct ply_header *out, const struct text *text, const 
     const char *end = number_i64(&count, line->words[2].at);
     if (line->words[1].size == 0) return word_expected(text, line->words[1], "the name of an element");
     if (end != line->words[2].at + line->words[2].size || count < 0) return word_expected(text, line->words[2], "a number of rows");
-    if (out->elements.count == MOST_ELEMENTS) return text_fail(text, line->words[0].at, "more than %d elements, expected fewer", MOST_ELEMENTS);
+    if (out->elements.count == MOST_ELEMENTS)
+        return text_fail(text, line->words[0].at, "more than %d elements, expected fewer", MOST_ELEMENTS);
     struct ply_element *element = array_push(&out->elements, text->ctx);
     if (!element) return false;
     *element = (struct ply_element){.name = line->words[1], .count = (uint64_t)count, .first = out->properties.count};
@@ -155,16 +159,20 @@ static bool read_lines(struct ply_header *out, struct text *text) {
     struct line line;
     bool crlf = strncmp(text->at, "ply\r\n", 5) == 0, has_format = false;
     line_read(&line, text, crlf);
-    if (line.count == 0 || !ply_word_is(line.words[0], "ply")) return text_fail(text, text->begin, "is no PLY file, expected 'ply' on the first line");
+    if (line.count == 0 || !ply_word_is(line.words[0], "ply"))
+        return text_fail(text, text->begin, "is no PLY file, expected 'ply' on the first line");
     while (text->at < text->end) {
         const char *start = text->at;
         line_read(&line, text, crlf);
         const struct ply_word first = line.words[0];
         bool good = true;
         if (ply_word_is(first, "end_header")) return has_format || text_fail(text, start, "the header ends without a format line");
-        if (ply_word_is(first, "format")) good = has_format = read_format(out, text, &line);
-        else if (ply_word_is(first, "element")) good = read_element(out, text, &line);
-        else if (ply_word_is(first, "property")) good = read_property(out, text, &line);
+        if (ply_word_is(first, "format"))
+            good = has_format = read_format(out, text, &line);
+        else if (ply_word_is(first, "element"))
+            good = read_element(out, text, &line);
+        else if (ply_word_is(first, "property"))
+            good = read_property(out, text, &line);
         else if (first.size > 0 && !ply_word_is(first, "comment") && !ply_word_is(first, "obj_info"))
             good = word_expected(text, first, "format, element, property, comment or end_header");
         if (!good) return false;

@@ -14,27 +14,30 @@ enum ply_type { PLY_INT8, PLY_UINT8, PLY_INT16, PLY_UINT16, PLY_INT32, PLY_UINT3
 unsigned ply_type_size(enum ply_type type);
 
 // A word of the header, in place.
-struct ply_word { const char *at; size_t size; };
+struct ply_word {
+    const char *at;
+    size_t size;
+};
 bool ply_word_is(struct ply_word word, const char *name);
 
 struct ply_property {
     struct ply_word name;
-    enum ply_type type;         // of the value, or of a list's items
+    enum ply_type type; // of the value, or of a list's items
     bool is_list;
-    enum ply_type count_type;   // of a list's length
+    enum ply_type count_type; // of a list's length
 };
 
 struct ply_element {
     struct ply_word name;
-    uint64_t count;             // rows
+    uint64_t count;               // rows
     size_t first, property_count; // its properties are first … first + property_count - 1
 };
 
 // Words point into the text. Zeroed is empty.
 struct ply_header {
     enum ply_format format;
-    struct array elements;      // struct ply_element
-    struct array properties;    // struct ply_property
+    struct array elements;   // struct ply_element
+    struct array properties; // struct ply_property
 };
 
 // Reads the header and leaves text->at at the first byte of the data.

@@ -21,10 +21,10 @@ bool scene_load(struct scene *out, struct context *ctx, const char *path) {
     struct scene_build build = {.scene = out, .ctx = ctx, .materials = MATERIAL_TABLE};
     char suffix[16];
     path_suffix(path, suffix, sizeof suffix);
-    if (!progress(ctx, "scene", 0, -1)) return false;
     out->path = strdup(path);
     bool done = out->path || fail(ctx, GN_LIMIT, "no memory for a path");
-    done = done && (strcmp(suffix, "json") == 0 ? scene_load_json(&build, path) : scene_load_model(&build, path));
+    done = done && progress(ctx, "scene", 0, -1) &&
+           (strcmp(suffix, "json") == 0 ? scene_load_json(&build, path) : scene_load_model(&build, path));
     material_table_take(&build.materials, &out->materials, &out->material_count);
     done = done && progress(ctx, "scene", 1, 0);
     if (!done) scene_finish(out);
@@ -79,8 +79,10 @@ bool scene_derive(struct scene *scene, struct context *ctx) {
     if (!scene->first_triangle || !scene->first_sphere) return false;
     uint64_t triangles = 0, spheres = 0;
     for (uint32_t i = 0; i < scene->shape_count; i++) {
-        if (scene->shapes[i].type == SHAPE_SPHERE) spheres++;
-        else triangles += scene->shapes[i].mesh.triangle_count;
+        if (scene->shapes[i].type == SHAPE_SPHERE)
+            spheres++;
+        else
+            triangles += scene->shapes[i].mesh.triangle_count;
         if (triangles > MOST_PRIMITIVES || spheres > MOST_PRIMITIVES)
             return fail(ctx, GN_LIMIT, "%s: the scene has more than %u %s", scene->path, MOST_PRIMITIVES,
                         spheres > MOST_PRIMITIVES ? "spheres" : "triangles");
@@ -99,8 +101,10 @@ static uint32_t shape_of(const uint32_t *first, uint32_t shape_count, uint32_t n
     uint32_t low = 0, high = shape_count;
     while (high - low > 1) {
         uint32_t middle = low + (high - low) / 2;
-        if (first[middle] <= number) low = middle;
-        else high = middle;
+        if (first[middle] <= number)
+            low = middle;
+        else
+            high = middle;
     }
     return low;
 }

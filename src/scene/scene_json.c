@@ -150,7 +150,8 @@ static bool read_transform(struct transform *out, const struct json_at *at) {
         for (size_t j = 0; j < 4; j++) {
             const struct json_at item = at_item(&row, flat ? 4 * i + j : j);
             if (!at_double(&item, &out->m[i][j])) return false;
-            if (i == 3 && out->m[i][j] != (j == 3)) return at_expected(&item, j == 3 ? "1: the last row must be 0 0 0 1" : "0: the last row must be 0 0 0 1");
+            if (i == 3 && out->m[i][j] != (j == 3))
+                return at_expected(&item, j == 3 ? "1: the last row must be 0 0 0 1" : "0: the last row must be 0 0 0 1");
         }
     }
     const double condition = transform_condition(out);
@@ -173,11 +174,13 @@ enum normals { NORMALS_FILE, NORMALS_FLAT, NORMALS_SMOOTH };
 static bool load_model(struct model *out, struct scene_build *build, const struct json_at *shape) {
     struct json_at at;
     const char *name;
-    if (!at_require(shape, "file", "the path of a mesh") || !at_member(&at, shape, "file") || !at_text(&at, "the path of a mesh", &name)) return false;
+    if (!at_require(shape, "file", "the path of a mesh") || !at_member(&at, shape, "file") || !at_text(&at, "the path of a mesh", &name))
+        return false;
     char *path = path_beside(build->scene->path, name);
     if (!path) return fail(build->ctx, GN_LIMIT, "no memory for a path");
     const char *trouble = path_unreadable(path);
-    const bool done = trouble ? at_fail(&at, "is \"%s\", expected a file that can be read: %s", excerpt_word(name).text, trouble) : model_load(out, build->ctx, path);
+    const bool done = trouble ? at_fail(&at, "is \"%s\", expected a file that can be read: %s", excerpt_word(name).text, trouble)
+                              : model_load(out, build->ctx, path);
     free(path);
     return done;
 }
@@ -205,7 +208,8 @@ static bool read_shape(struct scene_shape *out, struct scene_build *build, const
         [SHAPE_SPHERE] = read_sphere, [SHAPE_TRIANGLE] = read_triangle, [SHAPE_MESH] = read_mesh};
     int type = SHAPE_SPHERE;
     if (!json_is_object(at->value)) return at_expected(at, "an object");
-    return at_require(at, "type", "\"sphere\", \"triangle\" or \"mesh\"") && at_get_choice(at, "type", types, &type) && readers[type](out, build, at);
+    return at_require(at, "type", "\"sphere\", \"triangle\" or \"mesh\"") && at_get_choice(at, "type", types, &type) &&
+           readers[type](out, build, at);
 }
 
 static bool read_shapes(struct scene_build *build, const struct json_at *root) {
@@ -230,11 +234,13 @@ static bool read_shapes(struct scene_build *build, const struct json_at *root) {
 static bool read_version(const struct json_at *root) {
     struct json_at version;
     if (!at_require(root, "version", "\"version\": 1") || !at_member(&version, root, "version")) return false;
-    return (json_is_number(version.value) && json_number_value(version.value) == 1) || at_expected(&version, "1, the only version there is");
+    return (json_is_number(version.value) && json_number_value(version.value) == 1) ||
+           at_expected(&version, "1, the only version there is");
 }
 
 static bool read_scene(struct scene_build *build, const struct json_at *root) {
-    static const char *const keys[] = {"version", "camera", "film", "background", "ambient", "materials", "lights", "shapes", "shadows", NULL};
+    static const char *const keys[] = {"version",   "camera", "film",   "background", "ambient",
+                                       "materials", "lights", "shapes", "shadows",    NULL};
     struct scene *scene = build->scene;
     struct json_at at;
     if (!json_is_object(root->value)) return at_expected(root, "an object");
@@ -245,7 +251,8 @@ static bool read_scene(struct scene_build *build, const struct json_at *root) {
         return false;
     const bool has_camera = at_member(&at, root, "camera");
     if (has_camera && !read_camera(&scene->camera, &at)) return false;
-    if (!read_materials(build, root) || !read_lights(build, root) || !read_shapes(build, root) || !scene_derive(scene, build->ctx)) return false;
+    if (!read_materials(build, root) || !read_lights(build, root) || !read_shapes(build, root) || !scene_derive(scene, build->ctx))
+        return false;
     if (has_camera) return true;
     const struct scene_ball ball = scene_ball(scene);
     return frame_camera(&scene->camera, build->ctx, &ball, 1);

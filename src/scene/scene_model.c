@@ -12,7 +12,7 @@
 // A warm grey with a faint highlight stands in where the file names no material.
 static bool add_clay(struct scene_build *build, uint32_t *number) {
     static const struct scene_material clay = {
-        .ambient = {0.78f, 0.74f, 0.70f}, .diffuse = {0.78f, 0.74f, 0.70f}, .specular = {0.12f, 0.12f, 0.12f}, .shininess = 40};
+        .ambient = {0.72f, 0.65f, 0.58f}, .diffuse = {0.72f, 0.65f, 0.58f}, .specular = {0.12f, 0.12f, 0.12f}, .shininess = 40};
     *number = (uint32_t)build->materials.items.count;
     struct scene_material *material = material_add(&build->materials, build->ctx, DEFAULT_MATERIAL);
     if (!material) return false;
@@ -52,9 +52,11 @@ static bool take_model(struct scene_build *build, struct model *model, int up_ax
     struct scene *scene = build->scene;
     if (!take_shape(build, model) || !scene_derive(scene, build->ctx)) return false;
     const struct scene_ball ball = scene_ball(scene);
-    if (model->camera_count > 0) scene->camera = model->cameras[0];
-    else if (!frame_camera(&scene->camera, build->ctx, &ball, up_axis)) return false;
-    for (int i = 0; i < 3; i++) scene->background[i] = 0.32f, scene->ambient[i] = 0.1f;
+    if (model->camera_count > 0)
+        scene->camera = model->cameras[0];
+    else if (!frame_camera(&scene->camera, build->ctx, &ball, up_axis))
+        return false;
+    for (int i = 0; i < 3; i++) scene->background[i] = 0.2f, scene->ambient[i] = 0.09f;
     return take_lights(build, model, &ball);
 }
 

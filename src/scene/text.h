@@ -8,12 +8,14 @@
 
 struct text {
     struct context *ctx;
-    const char *path;           // for messages
+    const char *path;             // for messages
     const char *begin, *at, *end; // *end is 0
 };
 
 // Line and column of `at`, both from 1; a column is a character, not a byte.
-struct text_place { size_t line, column; };
+struct text_place {
+    size_t line, column;
+};
 struct text_place text_place(const char *begin, const char *at);
 
 // GN_SCENE "path:line:column: …" for the place `at`. Returns false.

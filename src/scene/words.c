@@ -30,21 +30,26 @@ struct excerpt excerpt_make(const char *bytes, size_t size) {
             break;
         }
         bool printable = length > 0 && *at >= 0x20 && *at != 0x7f && !(at[0] == 0xc2 && at[1] < 0xa0);
-        if (printable) memcpy(out.text + used, at, length);
-        else out.text[used] = '?', length = length ? length : 1;
+        if (printable)
+            memcpy(out.text + used, at, length);
+        else
+            out.text[used] = '?', length = length ? length : 1;
         used += printable ? length : 1;
         i += length;
     }
     return out;
 }
 
-struct excerpt excerpt_word(const char *word) { return excerpt_make(word, strlen(word)); }
+struct excerpt excerpt_word(const char *word) {
+    return excerpt_make(word, strlen(word));
+}
 
 #define LONGEST_NAME 40
 
 static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c + ('a' - 'A')) : c; }
 
-// Fewest insertions, deletions and substitutions from a to b, letters in any case (V. I. Levenshtein 1966, by the usual table, one row at a time).
+// Fewest insertions, deletions and substitutions from a to b, letters in any case (V. I. Levenshtein 1966, by the usual table, one row at a
+// time).
 static size_t edit_distance(const char *a, const char *b) {
     size_t m = strlen(a), n = strlen(b), row[LONGEST_NAME + 1];
     if (m > LONGEST_NAME || n > LONGEST_NAME) return SIZE_MAX;
@@ -62,7 +67,9 @@ static size_t edit_distance(const char *a, const char *b) {
     return row[n];
 }
 
-struct nearest nearest_to(const char *wanted) { return (struct nearest){.wanted = wanted, .distance = SIZE_MAX}; }
+struct nearest nearest_to(const char *wanted) {
+    return (struct nearest){.wanted = wanted, .distance = SIZE_MAX};
+}
 
 void nearest_offer(struct nearest *nearest, const char *known) {
     size_t distance = edit_distance(nearest->wanted, known);

@@ -7,7 +7,9 @@
 #define EXCERPT_SIZE 64
 
 // A short printable copy of bytes[0 … size) of anything: control characters and what is not UTF-8 become '?', a long text is cut.
-struct excerpt { char text[EXCERPT_SIZE]; };
+struct excerpt {
+    char text[EXCERPT_SIZE];
+};
 struct excerpt excerpt_make(const char *bytes, size_t size);
 struct excerpt excerpt_word(const char *word);
 
@@ -15,13 +17,15 @@ struct excerpt excerpt_word(const char *word);
 struct nearest {
     const char *wanted;
     const char *best;
-    size_t distance;            // edits between wanted and best
+    size_t distance; // edits between wanted and best
 };
 struct nearest nearest_to(const char *wanted);
 void nearest_offer(struct nearest *nearest, const char *known);
 
 // "; did you mean 'best'?", or nothing.
-struct hint { char text[EXCERPT_SIZE + 32]; };
+struct hint {
+    char text[EXCERPT_SIZE + 32];
+};
 struct hint nearest_hint(const struct nearest *nearest);
 
 #endif
