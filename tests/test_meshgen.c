@@ -1,5 +1,6 @@
 // The mesh generator: the committed files are what it makes, closed where they claim to be, with unit normals that point outward; and
-// its arguments. The PLY reader here is the test's own.
+// its arguments. The PLY reader here is the test's own. And scenes/: every one loads, and the demo's shadow tells the time.
+#include <glob.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,6 +13,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "scene/scene.h"
 
 #include <cmocka.h>
 
@@ -380,6 +383,52 @@ static void wrong_usage_is_refused(void **state) {
     assert_int_not_equal(access("x.ply", F_OK), 0);
 }
 
+static struct scene load_scene(const char *path) {
+    struct gn_error error;
+    struct context ctx = context_make(NULL, &error);
+    struct scene scene;
+    if (!scene_load(&scene, &ctx, path)) fail_msg("%s", error.message);
+    return scene;
+}
+
+static void every_scene_loads(void **state) {
+    (void)state;
+    glob_t found;
+    assert_int_equal(glob(TEST_SOURCE_DIR "/scenes/*.json", 0, NULL, &found), 0);
+    assert_true(found.gl_pathc >= 15);
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        struct scene scene = load_scene(found.gl_pathv[i]);
+        assert_true(scene.shape_count > 0 && scene.light_count > 0);
+        scene_finish(&scene);
+    }
+    globfree(&found);
+}
+
+// How far, as the sine of an angle, the first light of the demo is from the plane of the style and the line of an hour.
+static double off_hour_plane(const struct scene *demo, double hour) {
+    const double pi = 3.14159265358979323846, latitude = 50 * pi / 180, angle = hour * pi / 12;
+    const double style[3] = {0, sin(latitude), -cos(latitude)}, line[3] = {sin(latitude) * sin(angle), 0, -cos(angle)},
+                 foot[3] = {0, 0, 0.3};
+    double sun[3], normal[3], product = 0, lengths[2] = {0, 0};
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        sun[k] = demo->lights[0].position[k] - foot[k];
+        normal[k] = style[i] * line[j] - style[j] * line[i];
+        product += sun[k] * normal[k];
+        lengths[0] += sun[k] * sun[k];
+        lengths[1] += normal[k] * normal[k];
+    }
+    return fabs(product) / sqrt(lengths[0] * lengths[1]);
+}
+
+static void the_demo_shows_five_o_clock(void **state) {
+    (void)state;
+    struct scene demo = load_scene(TEST_SOURCE_DIR "/scenes/demo.json");
+    assert_true(off_hour_plane(&demo, 5) < 0.002);
+    assert_true(off_hour_plane(&demo, 5.1) > 0.01);
+    scene_finish(&demo);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(committed_files_are_what_the_generator_makes),
@@ -390,6 +439,8 @@ int main(void) {
         cmocka_unit_test(triangles_chooses_n),
         cmocka_unit_test(an_offset_moves_the_mesh),
         cmocka_unit_test(wrong_usage_is_refused),
+        cmocka_unit_test(every_scene_loads),
+        cmocka_unit_test(the_demo_shows_five_o_clock),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

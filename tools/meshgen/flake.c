@@ -5,7 +5,7 @@
 static const char head[] =
     "{\n"
     "  \"version\": 1,\n"
-    "  \"camera\": {\"position\": [2.6, 2.5, 3.9], \"look_at\": [0, 0.06, 0], \"up\": [0, 1, 0], \"fov_y_deg\": 38},\n"
+    "  \"camera\": {\"position\": [2.6, 2.5, 3.9], \"look_at\": [0, 0.06, 0], \"up\": [0, 1, 0], \"fov_y_deg\": 40},\n"
     "  \"film\": {\"width\": 448, \"height\": 448, \"spp\": 1, \"transfer\": \"srgb\"},\n"
     "  \"background\": [0.012, 0.016, 0.03],\n"
     "  \"ambient\": [0.09, 0.1, 0.14],\n"

@@ -10,6 +10,7 @@
 #define LATITUDE (50.0 / 360) // turns
 #define FOOT_NORTH (-0.3)     // the foot lies south of the dial's centre
 #define INK 0.006             // how far marks rise above the face
+#define LAYER 0.0004          // where marks overlap one is this much higher, so that no two faces coincide
 
 static bool write_part(struct mesh *mesh, const struct shape_params *params) {
     struct ply_params ply = ply_params_for(params);
@@ -40,11 +41,11 @@ static struct v2 at_place(const struct place *place, double x, double y) {
 static struct place place_towards(struct v2 origin, struct v2 up) { return (struct place){origin, {up.y, -up.x}, up}; }
 
 // A stroke from (x0, y0) to (x1, y1) whose ends are level, `width` wide.
-static void add_stroke(struct mesh *mesh, const struct place *place, double x0, double y0, double x1, double y1, double width) {
+static void add_stroke(struct mesh *mesh, const struct place *place, double x0, double y0, double x1, double y1, double width, double top) {
     double half = width / 2;
     const struct v2 polygon[4] = {at_place(place, x0 - half, y0), at_place(place, x0 + half, y0), at_place(place, x1 + half, y1),
                                   at_place(place, x1 - half, y1)};
-    add_prism(mesh, polygon, 4, -INK, INK);
+    add_prism(mesh, polygon, 4, -INK, top);
 }
 
 #define LETTER_HEIGHT 0.115
@@ -52,33 +53,37 @@ static void add_stroke(struct mesh *mesh, const struct place *place, double x0, 
 #define THIN 0.011
 #define SERIF 0.009
 
-// One Roman digit with its left edge at x; returns its advance.
-static double add_digit(struct mesh *mesh, const struct place *place, char digit, double x) {
-    double width = digit == 'I' ? 0.046 : digit == 'V' ? 0.096 : 0.1;
+static double digit_width(char digit) { return digit == 'I' ? 0.046 : digit == 'V' ? 0.096 : 0.1; }
+
+// One Roman digit with its left edge at x.
+static void add_digit(struct mesh *mesh, const struct place *place, char digit, double x) {
+    double width = digit_width(digit);
     double left = x + 0.018, right = x + width - 0.018, middle = x + width / 2;
-    if (digit == 'I') add_stroke(mesh, place, middle, 0, middle, LETTER_HEIGHT, THICK);
+    const double low = 0.003, high = LETTER_HEIGHT - 0.003; // within the serifs, whose ends they do not share
+    if (digit == 'I') add_stroke(mesh, place, middle, low, middle, high, THICK, INK);
     if (digit == 'V') {
-        add_stroke(mesh, place, middle, 0, left, LETTER_HEIGHT, THICK);
-        add_stroke(mesh, place, middle + 0.004, 0, right, LETTER_HEIGHT, THIN);
+        add_stroke(mesh, place, middle, 0, left, high, THICK, INK);
+        add_stroke(mesh, place, middle + 0.004, low, right, high - low, THIN, INK - LAYER);
     }
     if (digit == 'X') {
-        add_stroke(mesh, place, right, 0, left, LETTER_HEIGHT, THICK);
-        add_stroke(mesh, place, left, 0, right, LETTER_HEIGHT, THIN);
+        add_stroke(mesh, place, right, low, left, high, THICK, INK);
+        add_stroke(mesh, place, left, 2 * low, right, high - low, THIN, INK - LAYER);
     }
     for (int end = digit == 'V'; end < 2; end++) {
         double y = end ? LETTER_HEIGHT - SERIF : 0;
         const struct v2 serif[4] = {at_place(place, x + 0.002, y), at_place(place, x + width - 0.002, y),
                                     at_place(place, x + width - 0.002, y + SERIF), at_place(place, x + 0.002, y + SERIF)};
-        add_prism(mesh, serif, 4, -INK, INK);
+        add_prism(mesh, serif, 4, -INK, INK + LAYER);
     }
-    return width;
 }
 
 static void add_numeral(struct mesh *mesh, struct place place, const char *numeral) {
-    double x = 0;
-    for (const char *digit = numeral; *digit; digit++) x -= *digit == 'I' ? 0.046 : *digit == 'V' ? 0.096 : 0.1;
-    x /= 2;
-    for (const char *digit = numeral; *digit; digit++) x += add_digit(mesh, &place, *digit, x);
+    double width = 0, x = 0;
+    for (const char *digit = numeral; *digit; digit++) width += digit_width(*digit);
+    for (const char *digit = numeral; *digit; digit++) {
+        add_digit(mesh, &place, *digit, x - width / 2);
+        x += digit_width(*digit);
+    }
 }
 
 static struct v2 hour_direction(double hours_after_noon) {
@@ -102,7 +107,7 @@ static void add_tick(struct mesh *mesh, double hour, struct v2 from, struct v2 t
 }
 
 static void add_circle(struct mesh *mesh, double inner, double outer, unsigned segments) {
-    const struct corner section[4] = {{inner, INK, 0}, {outer, INK, 0}, {outer, -INK, 0}, {inner, -INK, 0}};
+    const struct corner section[4] = {{inner, INK + LAYER, 0}, {outer, INK + LAYER, 0}, {outer, -INK, 0}, {inner, -INK, 0}};
     add_lathe(mesh, section, 4, true, segments);
 }
 
