@@ -40,7 +40,7 @@ bool find_pixel(out ivec2 at) {
 ray camera_ray(uvec2 pixel, uint number) {
     vec2 offset = HAS_ANTIALIASING ? film_offset(args.seed, pixel, number, args.spp) : vec2(0.5);
     vec3 direction = camera_direction(args.corner.xyz, args.du.xyz, args.dv.xyz, pixel, offset);
-    return ray_make(real3(args.position.xyz * args.position.w), real3(direction), 0.0, INFINITY, SELF_NONE);
+    return ray_make(real3(args.position.xyz), real3(direction), 0.0, INFINITY, SELF_NONE);
 }
 
 // What light `number` would add at s, seen along -v, if nothing is in its way; and the way to it.

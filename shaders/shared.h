@@ -134,8 +134,8 @@ enum {
 // ---------------------------------------------------------------------------------- push constants (128 bytes at most) and status
 // One dispatch of render.comp: some tiles of one band of rows of the film, up to some sample.
 struct render_args {
-    vec4 position;          // xyz of the camera; w: factor from scene units to device units, a power of two
-    vec4 corner;            // xyz, see render/camera.h; w: 1 / position.w
+    vec4 position;          // xyz of the camera, device coordinates (render/upload.h)
+    vec4 corner;            // xyz, see render/camera.h; w: scene units per device unit, a power of two
     vec4 du, dv;            // xyz
     uint width, height;     // of the whole film, pixels
     uint band_y, band_rows; // the rows in the film images
@@ -149,9 +149,9 @@ struct render_args {
 
 // One dispatch of trace.comp.
 struct trace_args {
+    vec4 base;              // xyz and w as base and scale in render/upload.h
     uint first, count;      // rays
     uint root;              // reference of the root
-    float scale;            // factor from scene units to device units, a power of two
     uint list_first;        // exact tier: entries of BINDING_LIST that earlier dispatches have filled
 };
 

@@ -35,6 +35,15 @@ void store_hit(uint number, float t, hit h, uint flags) {
     hit_words[at + 5u] = flags;
 }
 
+// Whether difference = a - b was rounded (two-sum: D. Knuth, TAOCP 2, 4.2.2, theorem B), or its product with a power of two.
+bool loses_bits(real3 a, real3 b, real3 difference, float scale) {
+    precise real3 part = difference - a;
+    precise real3 rest = (a - (difference - part)) + (-b - part);
+    precise real3 scaled = difference * scale;
+    precise real3 unscaled = scaled / scale;
+    return rest != real3(0.0) || unscaled != difference;
+}
+
 bool is_valid(vec3 o, vec3 d, float tmin, float tmax) {
     return is_finite(o) && is_finite(d) && (d.x != 0.0 || d.y != 0.0 || d.z != 0.0) && !is_nan(tmin) && !is_nan(tmax);
 }
@@ -91,15 +100,17 @@ void main() {
     bool empty = !(tmin < tmax);
 
     int steps = int(MAX_STEPS);
-    ray r = ray_make(real3(o) * args.scale, real3(valid ? d : vec3(1.0)), real(tmin) * args.scale, real(tmax) * args.scale, SELF_NONE);
+    float scale = args.base.w;
+    precise real3 from_base = real3(o) - real3(args.base.xyz);
+    ray r = ray_make(from_base * scale, real3(valid ? d : vec3(1.0)), real(tmin) * scale, real(tmax) * scale, SELF_NONE);
     search q = traverse(r, ANY_HIT, valid && !empty ? args.root : REF_NONE, steps);
-    // An origin that lost bits on its way to device units is not the ray that was given.
-    bool lossy = TIER == TIER_EXACT && valid && !empty && (o * args.scale) / args.scale != o;
+    // An origin that lost bits on its way to device coordinates is not the ray that was given.
+    bool lossy = TIER == TIER_EXACT && valid && !empty && loses_bits(real3(o), real3(args.base.xyz), from_base, scale);
     bool undecided = lossy || search_undecided(q, ANY_HIT);
     hit h = q.best;
     if (TIER == TIER_EXACT && !ANY_HIT && !undecided && h.object >= 0) undecided = !refine(r, h);
     if (undecided) h = hit_none();
-    float t = float(h.object < 0 ? INFINITY : h.t * r.t_scale / args.scale);
+    float t = float(h.object < 0 ? INFINITY : h.t * r.t_scale / scale);
     if (ANY_HIT && h.object >= 0) h.object = 0;
     store_hit(number, t, h, (valid ? 0u : HIT_INVALID) | (undecided ? HIT_UNDECIDED | HIT_OPEN : EARLIER));
     if (undecided) list_undecided(number);

@@ -83,11 +83,11 @@ static uint32_t bits_of(float value) {
     return bits;
 }
 
-// A record's question, in scene units.
-static struct resolve_ray question(const struct pending *p, const struct word4 *r, float scale) {
-    struct resolve_ray ray = {.tmin = 0, .tmax = float_of(r[2].w[3]) / scale, .any = r[3].w[1] != 0, .self = RESOLVE_NO_SELF};
+// A record's question, in scene coordinates. The origin's sum is exact but for components a billion times smaller than the base, which fp64 rounds.
+static struct resolve_ray question(const struct pending *p, const struct word4 *r, const struct device_scene *ds) {
+    struct resolve_ray ray = {.tmin = 0, .tmax = (double)float_of(r[2].w[3]) / ds->scale, .any = r[3].w[1] != 0, .self = RESOLVE_NO_SELF};
     for (int i = 0; i < 3; i++) {
-        ray.o[i] = float_of(r[1].w[i]) / scale;
+        ray.o[i] = (double)float_of(r[1].w[i]) / ds->scale + ds->base[i];
         ray.d[i] = float_of(r[2].w[i]);
     }
     uint32_t self = r[1].w[3];
@@ -118,7 +118,7 @@ static bool answer_all(struct pending *p, const struct pending_work *work, uint3
         if (r[0].w[3] != PENDING_ASKS) continue;
         if (r[0].w[2] == PENDING_ANSWERS)
             ok = fail(work->ctx, GN_LIMIT, "more than %d rays of one sample are undecided, the most that the exact tier keeps", PENDING_ANSWERS);
-        rays[count++] = question(p, r, work->ds->scale);
+        rays[count++] = question(p, r, work->ds);
     }
     struct ref_world world = ref_world_make(work->scene, work->bvh, work->specialization->effects);
     ok = ok && resolve_rays(answers, work->ctx, &world, rays, count);

@@ -89,8 +89,10 @@ static vec4 vec4_of(const float v[3], float w) { return (vec4){v[0], v[1], v[2],
 static void make_args(struct pass *p, const struct scene *scene) {
     const struct render_params *params = p->params;
     struct camera_rays camera = camera_rays_make(&scene->camera, params->width, params->height);
+    float position[3];
+    device_point(position, &p->ds, camera.position);
     p->args = (struct render_args){
-        .position = vec4_of(camera.position, p->ds.scale),
+        .position = vec4_of(position, 0),
         .corner = vec4_of(camera.corner, 1.0f / p->ds.scale),
         .du = vec4_of(camera.du, 0),
         .dv = vec4_of(camera.dv, 0),
@@ -266,7 +268,7 @@ static bool make_images(struct render_film *out, struct context *ctx, const stru
 static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh *bvh) {
     struct render_film *out = p->out;
     double start = clock_seconds();
-    if (!device_scene_init(&p->ds, p->ctx, p->device, scene, bvh, p->params->effects, true)) return false;
+    if (!device_scene_init(&p->ds, p->ctx, p->device, scene, bvh, p->params->effects, scene->camera.position, true)) return false;
     if (!make_film(p) || !make_status(&p->status, p->ctx, p->device)) return false;
     if (!pending_init(&p->pending, p->ctx, p->device, p->params->tier == TIER_EXACT)) return false;
     out->upload_ms = clock_ms_since(start);

@@ -63,13 +63,13 @@ static bool dispatch(struct batch *b, struct kernel *kernel, struct trace_args *
 
 // A kernel that the driver has compiled: software devices do so at the first dispatch, which is not to count as shooting.
 static bool make_warm(struct batch *b, struct kernel *out, enum kernel_name name) {
-    struct trace_args nothing = {.root = REF_NONE};
+    struct trace_args nothing = {.root = REF_NONE, .base = {0, 0, 0, 1}};
     return make_kernel(b, out, name) && dispatch(b, out, &nothing, 1, NULL);
 }
 
 // Shoots `count` rays with a kernel once, in pieces, and adds the time to *spent; *open becomes how many it left undecided.
 static bool shoot(struct batch *b, struct kernel *kernel, uint32_t count, double *spent, uint32_t *open) {
-    struct trace_args args = {.root = b->ds.root, .scale = b->ds.scale};
+    struct trace_args args = {.root = b->ds.root, .base = {b->ds.base[0], b->ds.base[1], b->ds.base[2], b->ds.scale}};
     for (uint32_t first = 0; first < count; first += args.count) {
         uint32_t groups = (count - first + GROUP_SIZE - 1) / GROUP_SIZE;
         if (groups > b->pieces.groups) groups = b->pieces.groups;
@@ -130,12 +130,14 @@ static bool resolve_undecided(struct batch *b, const struct scene *scene, const 
     struct resolve_ray *questions = array_alloc(b->ctx, open, sizeof *questions, "undecided rays");
     struct resolve_answer *answers = array_alloc(b->ctx, open, sizeof *answers, "undecided rays");
     bool ok = questions && answers;
-    for (size_t i = 0, k = 0; ok && i < count; i++) {
+    for (size_t i = 0, next = 0; ok && i < count; i++) {
         if (!(hits[i].flags & HIT_OPEN)) continue;
-        struct resolve_ray *q = &questions[k++];
+        struct resolve_ray *q = &questions[next++];
         *q = (struct resolve_ray){.tmin = rays[i].tmin, .tmax = rays[i].tmax, .self = RESOLVE_NO_SELF, .any = b->params->any};
-        memcpy(q->o, rays[i].origin, sizeof q->o);
-        memcpy(q->d, rays[i].direction, sizeof q->d);
+        for (int k = 0; k < 3; k++) {
+            q->o[k] = rays[i].origin[k];
+            q->d[k] = rays[i].direction[k];
+        }
     }
     struct ref_world world = ref_world_make(scene, bvh, b->params->effects);
     ok = ok && resolve_rays(answers, b->ctx, &world, questions, open);
@@ -154,7 +156,7 @@ static bool resolve_undecided(struct batch *b, const struct scene *scene, const 
 static bool run_batch(struct batch *b, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays, struct gn_hit *hits, size_t count) {
     size_t portion = count < PORTION_RAYS ? count : PORTION_RAYS;
     double start = clock_seconds();
-    if (!device_scene_init(&b->ds, b->ctx, b->device, scene, bvh, b->params->effects, false) || !make_buffers(b, portion)) return false;
+    if (!device_scene_init(&b->ds, b->ctx, b->device, scene, bvh, b->params->effects, NULL, false) || !make_buffers(b, portion)) return false;
     b->stats->upload_ms = clock_ms_since(start);
     start = clock_seconds();
     if (!make_warm(b, &b->kernel, first_kernel(b))) return false;

@@ -12,7 +12,7 @@ struct upload {
     const struct bvh *bvh;
     uint32_t effects;
     uint32_t triangle_count, sphere_count;
-    float scale;
+    float base[3], scale;   // as in device_scene
     uint32_t *inner;        // by node: inner nodes before it
     uint32_t *slot;         // by position in bvh->order: primitives of the same kind before it; NULL where there is only one kind
     uint32_t inner_count;
@@ -24,28 +24,52 @@ static uint32_t float_bits(float value) {
     return bits;
 }
 
-static struct word4 word4_of(const float v[3], float scale, uint32_t last) {
-    return (struct word4){{float_bits(v[0] * scale), float_bits(v[1] * scale), float_bits(v[2] * scale), last}};
+static struct word4 word4_of(const float v[3], uint32_t last) { return (struct word4){{float_bits(v[0]), float_bits(v[1]), float_bits(v[2]), last}}; }
+
+// A point in device coordinates. Exact for geometry; what is not, lights, is rounded once.
+static struct word4 point_of(const struct upload *u, const float v[3], uint32_t last) {
+    float p[3];
+    for (int i = 0; i < 3; i++) p[i] = (float)(((double)v[i] - u->base[i]) * u->scale);
+    return word4_of(p, last);
 }
 
-// The power of two that brings the largest coordinate into [1, 2).
-static float scene_scale(const struct scene *scene) {
-    float largest = 0;
+// Where the geometry lies along an axis, or 0. It is not 0 where the extent is at most the distance from the origin: all coordinates are then multiples of
+// the nearer bound's ulp, the base, too, and their differences no larger than that bound, so that they are exact (cf. Sterbenz).
+static float axis_base(float low, float high) {
+    double near = fmin(fabs((double)low), fabs((double)high)), extent = (double)high - low;
+    if (!(low > 0 || high < 0) || !(extent <= near) || !isfinite(extent)) return 0;
+    return (float)(0.5 * ((double)low + high));
+}
+
+static bool is_exact_difference(float a, float b) { return (double)(float)((double)a - b) == (double)a - b; }
+
+static void find_base(float base[3], const struct scene *scene, const float *eye) {
+    for (int i = 0; i < 3; i++) {
+        base[i] = axis_base(scene->bounds_min[i], scene->bounds_max[i]);
+        if (eye && !is_exact_difference(eye[i], base[i])) base[i] = 0;
+    }
+}
+
+// The power of two that brings the largest coordinate, relative to the base, into [1, 2).
+static float find_scale(const struct scene *scene, const float base[3]) {
+    double largest = 0;
     for (int i = 0; i < 3; i++) {
         if (!(scene->bounds_min[i] <= scene->bounds_max[i])) continue;
-        largest = fmaxf(largest, fmaxf(fabsf(scene->bounds_min[i]), fabsf(scene->bounds_max[i])));
+        largest = fmax(largest, fmax(fabs((double)scene->bounds_min[i] - base[i]), fabs((double)scene->bounds_max[i] - base[i])));
     }
     if (!(largest > 0) || isinf(largest)) return largest > 0 ? 0x1p-126f : 1.0f;
     int exponent;
-    frexpf(largest, &exponent); // largest = m · 2^exponent, m in [0.5, 1)
+    frexp(largest, &exponent); // largest = m · 2^exponent, m in [0.5, 1)
     exponent = 1 - exponent;
     return ldexpf(1.0f, exponent < -126 ? -126 : exponent > 126 ? 126 : exponent);
 }
 
 static bool is_sphere(const struct upload *u, uint32_t primitive) { return primitive >= u->triangle_count; }
 
-static bool upload_init(struct upload *u, struct context *ctx, const struct scene *scene, const struct bvh *bvh, uint32_t effects) {
-    *u = (struct upload){.scene = scene, .bvh = bvh, .effects = effects, .scale = scene_scale(scene)};
+static bool upload_init(struct upload *u, struct context *ctx, const struct scene *scene, const struct bvh *bvh, uint32_t effects, const float *eye) {
+    *u = (struct upload){.scene = scene, .bvh = bvh, .effects = effects};
+    find_base(u->base, scene, eye);
+    u->scale = find_scale(scene, u->base);
     u->triangle_count = scene_triangle_count(scene);
     u->sphere_count = scene_sphere_count(scene);
     u->inner = array_alloc(ctx, bvh->node_count, sizeof *u->inner, "node numbers");
@@ -94,10 +118,10 @@ static uint32_t root_reference(const struct upload *u) {
 static void write_node(const struct upload *u, uint32_t number, struct word4 *to) {
     uint32_t first = u->bvh->nodes[number].first;
     const struct bvh_node *left = &u->bvh->nodes[first], *right = left + 1;
-    to[0] = word4_of(left->min, u->scale, node_reference(u, first));
-    to[1] = word4_of(left->max, u->scale, node_reference(u, first + 1));
-    to[2] = word4_of(right->min, u->scale, 0);
-    to[3] = word4_of(right->max, u->scale, 0);
+    to[0] = point_of(u, left->min, node_reference(u, first));
+    to[1] = point_of(u, left->max, node_reference(u, first + 1));
+    to[2] = point_of(u, right->min, 0);
+    to[3] = point_of(u, right->max, 0);
 }
 
 // The last node before which there are `inner` inner nodes and which is one itself.
@@ -130,15 +154,15 @@ static bool fill_nodes(void *data, void *to, uint64_t offset, uint64_t size) {
 
 static void write_triangle(const struct upload *u, uint32_t number, struct word4 *to) {
     struct scene_triangle t = scene_triangle_at(u->scene, number);
-    to[0] = word4_of(t.v[0], u->scale, t.object);
-    to[1] = word4_of(t.v[1], u->scale, t.primitive);
-    to[2] = word4_of(t.v[2], u->scale, t.material);
+    to[0] = point_of(u, t.v[0], t.object);
+    to[1] = point_of(u, t.v[1], t.primitive);
+    to[2] = point_of(u, t.v[2], t.material);
 }
 
 static void write_sphere(const struct upload *u, uint32_t number, struct word4 *to) {
     uint32_t object = scene_sphere_object(u->scene, number);
     const struct scene_shape *shape = &u->scene->shapes[object];
-    to[0] = word4_of(shape->center, u->scale, float_bits(shape->radius * u->scale));
+    to[0] = point_of(u, shape->center, float_bits(shape->radius * u->scale));
     to[1] = (struct word4){{object, shape->material, 0, 0}};
 }
 
@@ -239,7 +263,7 @@ static bool fill_normals(void *data, void *to, uint64_t offset, uint64_t size) {
         if (overlap(want, vertices, mesh->vertex_count, &have)) {
             struct word4 *word = (struct word4 *)to + (have.first - want.first);
             const float *normal = mesh->normals + 3 * (have.first - vertices);
-            for (uint64_t k = 0; k < have.count; k++) word[k] = word4_of(normal + 3 * k, 1, 0);
+            for (uint64_t k = 0; k < have.count; k++) word[k] = word4_of(normal + 3 * k, 0);
         }
         vertices += mesh->vertex_count;
     }
@@ -263,9 +287,9 @@ static bool fill_materials(void *data, void *to, uint64_t offset, uint64_t size)
     struct word4 *word = to;
     const struct scene_material *m = u->scene->materials + offset / (MATERIAL_WORDS * sizeof *word);
     for (uint64_t left = size / (MATERIAL_WORDS * sizeof *word); left; left--, m++, word += MATERIAL_WORDS) {
-        word[0] = word4_of(m->ambient, 1, float_bits(m->shininess));
-        word[1] = word4_of(m->diffuse, 1, 0);
-        word[2] = word4_of(m->specular, 1, 0);
+        word[0] = word4_of(m->ambient, float_bits(m->shininess));
+        word[1] = word4_of(m->diffuse, 0);
+        word[2] = word4_of(m->specular, 0);
     }
     return true;
 }
@@ -275,15 +299,15 @@ static bool fill_lights(void *data, void *to, uint64_t offset, uint64_t size) {
     struct word4 *word = to;
     const struct scene_light *l = u->scene->lights + offset / (LIGHT_WORDS * sizeof *word);
     for (uint64_t left = size / (LIGHT_WORDS * sizeof *word); left; left--, l++, word += LIGHT_WORDS) {
-        word[0] = word4_of(l->position, u->scale, float_bits(l->falloff == FALLOFF_INVERSE_SQUARE ? 1.0f : 0.0f));
-        word[1] = word4_of(l->intensity, 1, 0);
+        word[0] = point_of(u, l->position, float_bits(l->falloff == FALLOFF_INVERSE_SQUARE ? 1.0f : 0.0f));
+        word[1] = word4_of(l->intensity, 0);
     }
     return true;
 }
 
 static bool fill_globals(void *data, void *to, uint64_t offset, uint64_t size) {
     const struct upload *u = data;
-    struct word4 words[GLOBAL_WORDS] = {word4_of(u->scene->background, 1, 0), word4_of(u->scene->ambient, 1, 0)};
+    struct word4 words[GLOBAL_WORDS] = {word4_of(u->scene->background, 0), word4_of(u->scene->ambient, 0)};
     memcpy(to, (const char *)words + offset, size);
     return true;
 }
@@ -323,6 +347,7 @@ static bool make_shading(struct device_scene *out, struct context *ctx, struct d
 
 static bool make_geometry(struct device_scene *out, struct context *ctx, struct device *device, struct upload *u) {
     bool triangles = u->effects & EFFECT_TRIANGLES, spheres = u->effects & EFFECT_SPHERES;
+    memcpy(out->base, u->base, sizeof out->base);
     out->scale = u->scale;
     out->root = root_reference(u);
     return make(&out->nodes, ctx, device, u, "bvh nodes", u->inner_count, NODE_WORDS, fill_nodes) &&
@@ -331,10 +356,10 @@ static bool make_geometry(struct device_scene *out, struct context *ctx, struct 
 }
 
 bool device_scene_init(struct device_scene *out, struct context *ctx, struct device *device, const struct scene *scene,
-                       const struct bvh *bvh, uint32_t effects, bool shading) {
+                       const struct bvh *bvh, uint32_t effects, const float *eye, bool shading) {
     *out = (struct device_scene){0};
     struct upload u;
-    bool ok = upload_init(&u, ctx, scene, bvh, effects) && make_geometry(out, ctx, device, &u) &&
+    bool ok = upload_init(&u, ctx, scene, bvh, effects, eye) && make_geometry(out, ctx, device, &u) &&
               (!shading || make_shading(out, ctx, device, &u));
     upload_finish(&u);
     if (!ok) device_scene_finish(out, device);
@@ -346,6 +371,10 @@ void device_scene_finish(struct device_scene *ds, struct device *device) {
                                 &ds->lights, &ds->indices, &ds->normals, &ds->globals};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) buffer_finish(buffers[i], device);
     *ds = (struct device_scene){0};
+}
+
+void device_point(float out[3], const struct device_scene *ds, const float point[3]) {
+    for (int i = 0; i < 3; i++) out[i] = (float)(((double)point[i] - ds->base[i]) * ds->scale);
 }
 
 size_t device_scene_bindings(struct device_scene *ds, struct kernel_binding *bindings, bool shading) {
