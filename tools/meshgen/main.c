@@ -15,13 +15,13 @@ struct shape {
 };
 
 static const struct shape shapes[] = {
-    {"teapot", shape_teapot, 10, 1, 2000, 64, "Newell's teapot; n segments along a patch's edge"},
+    {"teapot", shape_teapot, 10, 1, 500, 64, "Newell's teapot; n segments along a patch's edge"},
     {"terrain", shape_terrain, 64, 1, 10000, 2, "mountains over a plain; n × n squares"},
     {"bumpy_sphere", shape_bumpy_sphere, 20, 1, 4000, 12, "a closed sphere with hills; six faces of n × n squares"},
     {"shell", shape_shell, 12, 1, 4000, 24, "a hollow ball with a wall of 4e-5; twice six faces of n × n squares"},
-    {"torus_knot", shape_torus_knot, 16, 3, 3000, 24, "a closed trefoil; n segments around the tube, 12·n along it"},
-    {"needles", shape_needles, 160, 1, 20000000, 0, "n triangles 100 times as long as wide"},
-    {"fan", shape_fan, 64, 3, 20000000, 0, "n triangles around one vertex"},
+    {"torus_knot", shape_torus_knot, 16, 3, 1000, 24, "a closed trefoil; n segments around the tube, 12·n along it"},
+    {"needles", shape_needles, 160, 1, 5000000, 0, "n triangles 100 times as long as wide"},
+    {"fan", shape_fan, 64, 3, 5000000, 0, "n triangles around one vertex"},
     {"flake", shape_flake, 3, 0, 6, 0, "a scene (JSON) of (9^(n+1) - 1) / 8 spheres"},
     {"dial", shape_dial, 96, 3, 10000, 0, "sundial: the plate; n segments around, as in all that follow"},
     {"dial_marks", shape_dial_marks, 96, 3, 10000, 0, "sundial: hour lines and numerals for 50 degrees north"},

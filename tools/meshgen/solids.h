@@ -19,8 +19,8 @@ void add_lathe(struct mesh *mesh, const struct corner *profile, unsigned count, 
 // a pole.
 void add_band(struct mesh *mesh, uint32_t upper, unsigned upper_count, uint32_t lower, unsigned lower_count);
 
-// A plate in the plane z = 0 with a hole of as many points as its outline, both counter-clockwise: point k of the one faces point k of
-// the other. Its edges are bevelled. Walls are smooth where the outline turns by less than some 25 degrees.
+// A plate in the plane z = 0 with a hole of as many points (at most 256) as its outline, both counter-clockwise: point k of the one faces
+// point k of the other. Its edges are bevelled. Walls are smooth where the outline turns by less than some 25 degrees.
 void add_plate(struct mesh *mesh, const struct v2 *outline, const struct v2 *hole, unsigned count, double thickness, double bevel);
 
 // A point of the plane y = 0 as the dial sees it: east is +x, north is −z.
