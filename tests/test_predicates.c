@@ -675,11 +675,12 @@ static void make_twins(struct candidate c[2], struct gn_ray *ray, uint64_t *stat
         for (int i = 0; i < 3; i++) c[1].center[i] = c[0].center[(i + 1) % 3];
         return;
     }
+    float distance = ldexpf(between(state, 1, 2), -(int)(oracle_random(state) % 14)); // from the plane: T is far smaller than its terms
     for (int i = 0; i < 3; i++) {
-        ray->origin[i] = between(state, -1, 1);
         ray->direction[i] = between(state, -1, 1);
         for (int k = 0; k < 3; k++) c[0].v[k][i] = (float)((int)(oracle_random(state) % (1u << 24)) - (1 << 23)) * 0x1p-20f;
         for (int k = 0; k < 3; k++) c[1].v[k][i] = 0.5f * (c[0].v[k][i] + c[0].v[1][i]);
+        ray->origin[i] = (c[1].v[0][i] + c[1].v[1][i] + c[1].v[2][i]) / 3 - distance * ray->direction[i];
     }
 }
 
