@@ -1,7 +1,7 @@
 // A ray and what it hits, in device units.
 //
 // A ray is brought to a safe scale when it is made: its direction is multiplied by the power of two that brings the largest component into
-// [1, 2). That is exact, and keeps products of a predicate away from overflow and underflow, whatever the caller's units. (fp64 has the range without.)
+// [1, 2). That is exact, and keeps products of a predicate away from overflow and underflow, whatever the caller's units; box.glsl counts on it, too.
 #ifndef RAY_GLSL
 #define RAY_GLSL
 #include "real.glsl"
@@ -42,7 +42,15 @@ int exponent_of(float x) { return int((floatBitsToUint(x) >> 23) & 0xffu) - 127;
 
 // A ray through o (device units) along d (any scale, not zero, finite), for t in units of d as given.
 #ifdef FP64
-ray ray_make(dvec3 o, dvec3 d, double tmin, double tmax, uint self) { return ray(o, d, tmin, tmax, 1.0lf, self); }
+// 2^exponent for -1022 <= exponent <= 1023.
+double power_of_two_double(int exponent) { return packDouble2x32(uvec2(0u, uint(exponent + 1023) << 20)); }
+
+ray ray_make(dvec3 o, dvec3 d, double tmin, double tmax, uint self) {
+    double largest = max(abs(d.x), max(abs(d.y), abs(d.z)));
+    int exponent = clamp(int((unpackDouble2x32(largest).y >> 20) & 0x7ffu) - 1023, -1000, 1000);
+    double up = power_of_two_double(-exponent), down = power_of_two_double(exponent);
+    return ray(o, d * up, tmin * down, tmax * down, up, self);
+}
 #else
 ray ray_make(vec3 o, vec3 d, float tmin, float tmax, uint self) {
     float largest = max(abs(d.x), max(abs(d.y), abs(d.z)));
