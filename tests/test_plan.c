@@ -117,6 +117,8 @@ static void without_pruning_everything_runs(void **state) {
         plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .no_prune = true, .disable = "shadows,spheres"}));
     assert_int_equal(plan.effects, ((1u << EFFECT_COUNT) - 1) & ~(uint32_t)(EFFECT_SHADOWS | EFFECT_SPHERES));
     scene_finish(&scene);
+    scratch_assert(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .no_prune = true})); // nothing there at all
+    assert_int_equal(plan.effects, (1u << EFFECT_COUNT) - 1);
 }
 
 static void names_are_checked(void **state) {

@@ -14,11 +14,11 @@
 struct facts {
     const struct scene *scene;
     uint32_t disabled; // EFFECT_* bits
-    uint32_t effects;  // that run, of those with a lower number
+    uint32_t effects;  // that are called for, of those with a lower number
     uint32_t spp;
     uint32_t *used_by; // for each material the first shape that uses it, or NOT_USED
     uint32_t triangles, spheres;
-    uint32_t shapes, last_shape; // how many there are, and the last
+    uint32_t last_shape; // that is there
 };
 #define NOT_USED UINT32_MAX
 
@@ -50,7 +50,6 @@ static bool facts_init(struct facts *out, struct context *ctx, const struct scen
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         const struct scene_shape *shape = &scene->shapes[i];
         if (!is_there(out, i)) continue;
-        out->shapes++;
         out->last_shape = i;
         if (shape->type == SHAPE_SPHERE)
             out->spheres++;
@@ -217,11 +216,14 @@ bool plan_make(struct plan *out, struct context *ctx, const struct scene *scene,
     if (!parse_disabled(&disabled, ctx, params->disable) || !facts_init(&facts, ctx, scene, disabled, params->spp)) return false;
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
         bool on = effects[i].rule(&facts, out->because[i]);
-        if (params->no_prune && !on) on = says(out->because[i], true, "pruning is switched off");
-        if (disabled >> i & 1) on = says(out->because[i], false, "disabled on request");
-        if (on) facts.effects |= 1u << i;
+        if (disabled >> i & 1)
+            on = says(out->because[i], false, "disabled on request");
+        else if (on)
+            facts.effects |= 1u << i;
+        else if (params->no_prune)
+            on = says(out->because[i], true, "pruning is switched off");
+        if (on) out->effects |= 1u << i;
     }
-    out->effects = facts.effects;
     free(facts.used_by);
     return true;
 }
