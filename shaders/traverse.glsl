@@ -114,7 +114,7 @@ search traverse(ray r, bool any, uint root, inout int steps) {
     uint ref = root;
     do {
         steps--;
-        while ((ref & REF_LEAF) == 0u && steps > 0) {
+        while (HAS_BVH && (ref & REF_LEAF) == 0u && steps > 0) {
             uvec4 w0 = node_word(NODE_WORDS * ref);
             uvec4 w1 = node_word(NODE_WORDS * ref + 1u);
             uvec4 w2 = node_word(NODE_WORDS * ref + 2u);

@@ -107,11 +107,12 @@ static bool rule_SPHERES(const struct facts *facts, char *because) {
     return says(because, false, "there are no spheres");
 }
 
-// A hierarchy decides which primitives are tested, not which are hit. A leaf holds primitives of one kind.
+// A hierarchy decides which primitives are tested, not which are hit. A leaf holds primitives of one kind. Disabled kinds count: they are in the
+// hierarchy, too, which is built for the scene.
 static bool rule_BVH(const struct facts *facts, char *because) {
-    const uint32_t count = facts->triangles + facts->spheres;
+    const uint32_t triangles = scene_triangle_count(facts->scene), spheres = scene_sphere_count(facts->scene), count = triangles + spheres;
     if (count > FEW_PRIMITIVES) return says(because, true, "%u primitives", count);
-    if (facts->triangles && facts->spheres) return says(because, true, "triangles and spheres");
+    if (triangles && spheres) return says(because, true, "triangles and spheres");
     return says(because, false, "%u primitive%s: one leaf", count, count == 1 ? "" : "s");
 }
 
@@ -216,6 +217,10 @@ bool plan_make(struct plan *out, struct context *ctx, const struct scene *scene,
     if (!parse_disabled(&disabled, ctx, params->disable) || !facts_init(&facts, ctx, scene, disabled, params->spp)) return false;
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
         bool on = effects[i].rule(&facts, out->because[i]);
+        if (on && disabled & 1u << i & EFFECT_BVH) {
+            free(facts.used_by);
+            return fail(ctx, GN_USAGE, "effect 'bvh' cannot be disabled here (%s): it changes no picture, and nothing is hit without it", out->because[i]);
+        }
         if (disabled >> i & 1)
             on = says(out->because[i], false, "disabled on request");
         else if (on)

@@ -111,8 +111,11 @@ static uint32_t node_reference(const struct upload *u, uint32_t number) {
 }
 
 static uint32_t root_reference(const struct upload *u) {
-    bool any = u->effects & (EFFECT_TRIANGLES | EFFECT_SPHERES);
-    return u->bvh->node_count && any ? node_reference(u, 0) : REF_NONE;
+    if (u->bvh->node_count == 0 || !(u->effects & (EFFECT_TRIANGLES | EFFECT_SPHERES))) return REF_NONE;
+    if (u->effects & EFFECT_BVH) return node_reference(u, 0);
+    // Without a hierarchy (the plan prunes it for a few primitives of one kind): one leaf of all.
+    const struct bvh_node all = {.first = 0, .count = u->bvh->primitive_count};
+    return leaf_reference(u, &all);
 }
 
 static void write_node(const struct upload *u, uint32_t number, struct word4 *to) {
