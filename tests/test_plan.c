@@ -63,7 +63,7 @@ static const struct scene_case cases[] = {
     {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "shadows", "triangles,spheres,bvh,diffuse"},
     {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "diffuse", "triangles,spheres,bvh"},
     {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "triangles", "spheres,bvh,diffuse"},
-    {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "spheres,bvh", "triangles,diffuse"},
+    {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "spheres,shadows", "triangles,bvh,diffuse"},
 };
 
 static int make_meshes(void **state) {
@@ -147,12 +147,24 @@ static void names_are_checked(void **state) {
     assert_string_equal(text, "triangles,s"); // cut, not overrun
 }
 
+// Leaving the hierarchy out of a scene that needs it would lose hits, so it is refused.
+static void the_hierarchy_cannot_be_disabled(void **state) {
+    (void)state;
+    static const struct scene_case c = {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, NULL, ""};
+    struct scene scene = load_case(&c);
+    struct plan plan;
+    scratch_assert_fails(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .disable = "bvh"}), GN_USAGE,
+                         "effect 'bvh' cannot be disabled here (triangles and spheres)");
+    scene_finish(&scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_scene_calls_for_what_it_needs),
         cmocka_unit_test(reasons_name_the_culprit),
         cmocka_unit_test(without_pruning_everything_runs),
         cmocka_unit_test(names_are_checked),
+        cmocka_unit_test(the_hierarchy_cannot_be_disabled),
     };
     return cmocka_run_group_tests_name("plan", tests, make_meshes, scratch_close);
 }
