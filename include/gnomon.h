@@ -132,6 +132,10 @@ enum gn_aov {
     GN_AOV_DEPTH = 1,      // distance along the ray from the camera, scene units; +inf where nothing is hit; 1 channel
     GN_AOV_NORMAL = 2,     // unit shading normal in world space, towards the viewer; 0 where nothing is hit; 3 channels
     GN_AOV_ID = 4,         // object and primitive of the first sample's hit, -1 for none; 2 channels
+    // Where accuracy is lost. The first two render the picture once more with the reference; none is there without a device.
+    GN_AOV_ERROR = 8,      // absolute difference of the colour to the reference's; 3 channels
+    GN_AOV_ULP = 16,       // difference of the depth to the reference's in ulp of that; +inf where one hits and the other does not; 1 channel
+    GN_AOV_UNDECIDED = 32, // rays of the pixel that the tier's first stage left undecided, over all samples; 1 channel
 };
 
 // Milliseconds. startup: opening the device; pipeline: making kernels; upload: filling the device's memory; total: all of these and what lies

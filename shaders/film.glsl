@@ -1,5 +1,5 @@
-// The film: sums of samples in storage images, Kahan-compensated, so that a picture of millions of samples keeps its digits, and resumable: a pixel
-// knows how many samples it has, and a dispatch goes on from there.
+// The film: sums of samples in storage images, Kahan-compensated (unless a knob says otherwise), so that a picture of millions of samples keeps its digits,
+// and resumable: a pixel knows how many samples it has, and a dispatch goes on from there.
 // W. Kahan, "Further remarks on reducing truncation errors", CACM 8(1), 1965.
 #ifndef FILM_GLSL
 #define FILM_GLSL
@@ -14,12 +14,13 @@ layout(set = 0, binding = BINDING_AOV_ID, rgba32i) uniform iimage2D aov_id_image
 #define AOV_DEPTH 1u
 #define AOV_NORMAL 2u
 #define AOV_ID 4u
+#define AOV_UNDECIDED 32u
 
 struct film_pixel {
     vec3 sum, residue;
     uint done, nonfinite;   // samples
     vec4 shade;             // sum of normals, sum of depths
-    ivec4 id;
+    ivec4 id;               // object, primitive of sample 0, samples that hit, rays left undecided
 };
 
 // What one sample brings.
@@ -59,6 +60,10 @@ void film_add(inout film_pixel pixel, film_sample s) {
     pixel.done++;
     if (!is_finite(s.radiance)) {
         pixel.nonfinite++;
+        return;
+    }
+    if (CHOSEN_SUM == SUM_PLAIN) {
+        pixel.sum += s.radiance;
         return;
     }
     precise vec3 term = s.radiance - pixel.residue;

@@ -54,20 +54,22 @@ void pending_ask(inout pending_sample pending, ray r, bool any, uint number) {
     pending.question[2] = uvec4(number, any ? 1u : 0u, 0u, 0u);
 }
 
-// Writes the question down, or that the sample is done. A new one that finds no place is asked again by the next dispatch.
-void pending_store(pending_sample pending, ivec2 at) {
+// Writes the question down, or that the sample is done. A new one that finds no place is asked again by the next dispatch. Returns whether there was a question
+// and it found a place.
+bool pending_store(pending_sample pending, ivec2 at) {
     uint record = pending.record;
     if (!RESOLVE) {
-        if (!pending.asks) return;
+        if (!pending.asks) return false;
         record = atomicAdd(pending_count, 1u);
-        if (record >= PENDING_CAPACITY) return;
+        if (record >= PENDING_CAPACITY) return false;
     }
     uint word = record * PENDING_WORDS;
     pending_words[word] = uvec4(uvec2(at), pending.answers, pending.asks ? PENDING_ASKS : PENDING_DONE);
-    if (!pending.asks) return;
+    if (!pending.asks) return false;
     pending_words[word + 1u] = pending.question[0];
     pending_words[word + 2u] = pending.question[1];
     pending_words[word + 3u] = pending.question[2];
+    return true;
 }
 
 #endif

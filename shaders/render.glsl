@@ -37,6 +37,11 @@ bool find_pixel(out ivec2 at) {
     return at.x < int(args.width) && at.y < int(args.band_rows);
 }
 
+// The pixel of the picture that stands at `at` in the band's images.
+uvec2 picture_pixel(ivec2 at) {
+    return (uvec2(at) + uvec2(0u, args.band_y)) * args.stride + uvec2(args.phase % args.stride, args.phase / args.stride);
+}
+
 ray camera_ray(uvec2 pixel, uint number) {
     vec2 offset = HAS_ANTIALIASING ? film_offset(args.seed, pixel, number, args.spp) : vec2(0.5);
     vec3 direction = camera_direction(args.corner.xyz, args.du.xyz, args.dv.xyz, pixel, offset);
@@ -49,7 +54,7 @@ real3 light_reflect(surface s, phong_material m, real3 v, uint number, out real3
     uvec4 w1 = texelFetch(light_words, int(LIGHT_WORDS * number + 1u));
     position = real3(uintBitsToFloat(w0.xyz));
     real3 way = position - s.p;
-    real3 l = normalize_robust(way);
+    real3 l = normalize_any(way);
     real distance = dot(way, l) * args.corner.w;
     real3 light = real3(uintBitsToFloat(w1.xyz)) * light_falloff(uintBitsToFloat(w0.w), distance);
     return light * phong_reflect(m, s.n, l, v, HAS_DIFFUSE, HAS_SPECULAR);
@@ -111,7 +116,7 @@ film_sample shoot_sample(ray camera, inout int steps, inout uint rays, inout pen
             if (HAS_SHADOWS) {
                 real3 start = leave_surface(s);
                 more = adds != real3(0.0);
-                r = ray_make(start, position - start, 0.0, 1.0, TIER == TIER_FAST ? SELF_NONE : s.primitive);
+                r = ray_make(start, position - start, 0.0, 1.0, leave_self(s));
             } else {
                 radiance += adds;
             }
@@ -136,10 +141,11 @@ void expose(inout film_pixel pixel, uvec2 position, inout pending_sample pending
     }
 }
 
-void report(film_pixel before, film_pixel after, uint rays, bool asks) {
+// `asks`: a ray was undecided; `stored`: its question was written down.
+void report(film_pixel before, film_pixel after, uint rays, bool asks, bool stored) {
     atomicAdd(dispatch_status.rays, rays);
     if (after.nonfinite != before.nonfinite) atomicAdd(dispatch_status.nonfinite, 1u);
-    if (asks) atomicAdd(dispatch_status.undecided, 1u);
+    if (stored) atomicAdd(dispatch_status.undecided, 1u);
     uint pending = asks ? 1u : 0u; // a sample that the host brings to its end
     if (after.done + pending < args.sample_end) {
         atomicAdd(dispatch_status.unfinished, 1u);
@@ -154,10 +160,11 @@ void main() {
     if (!RESOLVE) pending = pending_none();
     film_pixel before = film_load(at), pixel = before;
     uint rays = 0u;
-    expose(pixel, uvec2(at) + uvec2(0u, args.band_y), pending, rays);
+    expose(pixel, picture_pixel(at), pending, rays);
+    bool stored = TIER == TIER_EXACT && pending_store(pending, at);
+    if ((AOVS & AOV_UNDECIDED) != 0u && stored) pixel.id.w++;
     film_store(at, pixel);
-    if (TIER == TIER_EXACT) pending_store(pending, at);
-    report(before, pixel, rays, pending.asks);
+    report(before, pixel, rays, pending.asks, stored);
 }
 
 #endif

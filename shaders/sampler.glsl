@@ -1,4 +1,4 @@
-// Random numbers: Owen-scrambled Sobol points, counter-based, integer arithmetic only.
+// Random numbers: Owen-scrambled Sobol points, or where the knob says so independent ones; counter-based, integer arithmetic only.
 //
 // The value depends on seed, pixel, sample and dimension pair alone, so that tiles, threads and devices change nothing. Pairs of dimensions are
 // padded: each pair is the first two Sobol dimensions, its index shuffled and its values scrambled by hashes of its own.
@@ -6,6 +6,7 @@
 // Karras', with the constants that N. Vegdahl optimised); the integer hash is C. Wellons' lowbias32.
 #ifndef SAMPLER_GLSL
 #define SAMPLER_GLSL
+#include "shared.h"
 
 // Dimension pairs, each used once per sample.
 #define PAIR_FILM 0u
@@ -51,12 +52,20 @@ uvec2 sample_bits(uint seed, uvec2 pixel, uint index, uint pair) {
     return uvec2(x, y);
 }
 
+// The same, independent of each other and of those of other samples.
+uvec2 independent_bits(uint seed, uvec2 pixel, uint index, uint pair) {
+    uint key = hash_combine(hash_combine(hash_combine(hash_combine(hash_uint(seed), pixel.x), pixel.y), pair), index);
+    return uvec2(hash_combine(key, 0u), hash_combine(key, 1u));
+}
+
 // To [0, 1): at most 1 - 2^-24, never 1.
 vec2 unit_interval(uvec2 bits) { return vec2(bits >> 8u) * 5.9604644775390625e-8; }
 
 // Where in its pixel sample `index` of `spp` lies: the centre when there is but one.
 vec2 film_offset(uint seed, uvec2 pixel, uint index, uint spp) {
-    return spp == 1u ? vec2(0.5) : unit_interval(sample_bits(seed, pixel, index, PAIR_FILM));
+    if (spp == 1u) return vec2(0.5);
+    if (CHOSEN_SAMPLER == SAMPLER_INDEPENDENT) return unit_interval(independent_bits(seed, pixel, index, PAIR_FILM));
+    return unit_interval(sample_bits(seed, pixel, index, PAIR_FILM));
 }
 
 #endif

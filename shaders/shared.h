@@ -29,7 +29,28 @@
 
 #define TIER_COUNT 4
 
-// Numbers of the specialization constants that are no effects.
+// --------------------------------------------------------------------------------------------------------------- knobs
+// What else accuracy can be bought with. Each row is a specialization constant (its number), a name, and the names of its positions in order, beginning with
+// 0, the default. Where that is "tier", the tier says; else it is what all tiers do.
+#define KNOBS(X)                                                             \
+    X(48, OFFSET,    "offset",    "tier|share|bound|bound and self")         \
+    X(49, NORMALIZE, "normalize", "tier|inverse root|root and division")     \
+    X(50, POWER,     "power",     "tier|built-in|own")                       \
+    X(51, SAMPLER,   "sampler",   "sobol|independent")                       \
+    X(52, SUM,       "sum",       "kahan|plain")
+
+// Positions, as the rows above name them.
+#define OFFSET_SHARE 1u             // a ray leaves a surface by a fixed share of the scene's size
+#define OFFSET_BOUND 2u             // by the bound on the error of the point
+#define OFFSET_BOUND_SELF 3u        // the same, and the primitive it leaves is not hit again
+#define NORMALIZE_INVERSE_ROOT 1u
+#define NORMALIZE_ROOT 2u
+#define POWER_BUILT_IN 1u
+#define POWER_OWN 2u
+#define SAMPLER_INDEPENDENT 1u
+#define SUM_PLAIN 1u
+
+// Numbers of the specialization constants that are none of these.
 #define CONSTANT_TIER       32
 #define CONSTANT_AOVS       33      // GN_AOV_* bits
 #define CONSTANT_MAX_STEPS  34      // loop iterations an invocation may spend before it gives up
@@ -48,7 +69,7 @@
 #define BINDING_FILM        8       // rgba32f storage image: sum of samples r, g, b; samples done
 #define BINDING_RESIDUE     9       // rgba32f storage image: what Kahan summation still owes r, g, b; nonfinite samples
 #define BINDING_AOV_SHADE  10       // rgba32f storage image: sum of normal.xyz; sum of depth
-#define BINDING_AOV_ID     11       // rgba32i storage image: object, primitive of sample 0; samples that hit; unused
+#define BINDING_AOV_ID     11       // rgba32i storage image: object, primitive of sample 0; samples that hit; rays left undecided
 #define BINDING_STATUS     12       // storage buffer: struct status
 #define BINDING_RAYS       13       // trace kernel: 2 word4 per ray (origin, tmin; direction, tmax)
 #define BINDING_HITS       14       // trace kernel: storage buffer, 6 words per ray, struct gn_hit
@@ -116,6 +137,9 @@ EFFECTS(X)
 #define X(number, id, name, text) const uint TIER_##id = number;
 TIERS(X)
 #undef X
+#define X(number, id, name, positions) layout(constant_id = number) const uint CHOSEN_##id = 0u;
+KNOBS(X)
+#undef X
 #else
 #include <stdint.h>
 struct word4 { uint32_t w[4]; };
@@ -129,6 +153,17 @@ enum {
     TIERS(X)
 #undef X
 };
+enum knob {
+#define X(number, id, name, positions) KNOB_##id,
+    KNOBS(X)
+#undef X
+    KNOB_COUNT
+};
+enum {
+#define X(number, id, name, positions) CONSTANT_##id = number,
+    KNOBS(X)
+#undef X
+};
 #endif
 
 // ---------------------------------------------------------------------------------- push constants (128 bytes at most) and status
@@ -137,7 +172,7 @@ struct render_args {
     vec4 position;          // xyz of the camera, device coordinates (render/upload.h)
     vec4 corner;            // xyz, see render/camera.h; w: scene units per device unit, a power of two
     vec4 du, dv;            // xyz
-    uint width, height;     // of the whole film, pixels
+    uint width, height;     // of the whole film, pixels: the picture, or where stride is not 1 every so manieth of its pixels
     uint band_y, band_rows; // the rows in the film images
     uint first_tile;        // workgroup g renders tile (first_tile + g) · tile_stride mod tile_count of the band
     uint tile_count, tile_stride;
@@ -145,6 +180,7 @@ struct render_args {
     uint spp, seed;
     uint light_count;
     uint root;              // reference of the root
+    uint stride, phase;     // pixel (x, y) of the band's images, (x, y + band_y)·stride + (phase mod stride, phase / stride) of the picture
 };
 
 // One dispatch of trace.comp.

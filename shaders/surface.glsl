@@ -20,9 +20,17 @@ struct surface {
     uint primitive; // as a hit has it
 };
 
-real3 normalize_tier(real3 v) { return TIER == TIER_FAST ? normalize_fast(v) : normalize_robust(v); }
+// How vectors become unit ones, as the knob says, else the tier; and those that may vanish, which every tier normalizes accurately.
+real3 normalize_tier(real3 v) {
+    bool inverse = CHOSEN_NORMALIZE == 0u ? TIER == TIER_FAST : CHOSEN_NORMALIZE == NORMALIZE_INVERSE_ROOT;
+    return inverse ? normalize_fast(v) : normalize_robust(v);
+}
+real3 normalize_any(real3 v) { return CHOSEN_NORMALIZE == NORMALIZE_INVERSE_ROOT ? normalize_fast(v) : normalize_robust(v); }
 
-real3 leave_surface(surface s) { return TIER == TIER_FAST ? leave_fast(s.p, s.ng) : leave_robust(s.p, s.error, s.ng); }
+// Where a ray that leaves s starts, and the primitive that it does not hit again, by the offset rule that the knob says, else the tier's.
+const uint OFFSET = CHOSEN_OFFSET != 0u ? CHOSEN_OFFSET : TIER == TIER_FAST ? OFFSET_SHARE : OFFSET_BOUND_SELF;
+real3 leave_surface(surface s) { return OFFSET == OFFSET_SHARE ? leave_fast(s.p, s.ng) : leave_robust(s.p, s.error, s.ng); }
+uint leave_self(surface s) { return OFFSET == OFFSET_BOUND_SELF ? s.primitive : SELF_NONE; }
 
 // The interpolated vertex normal, or ng where the mesh has none or the sum vanishes.
 real3 smooth_normal(hit h, real3 ng) {
@@ -32,7 +40,7 @@ real3 smooth_normal(hit h, real3 ng) {
     real3 n0 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.x)).xyz));
     real3 n1 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.y)).xyz));
     real3 n2 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.z)).xyz));
-    real3 n = normalize_robust((1.0 - h.u - h.v) * n0 + h.u * n1 + h.v * n2);
+    real3 n = normalize_any((1.0 - h.u - h.v) * n0 + h.u * n1 + h.v * n2);
     return dot(n, n) > 0.5 ? n : ng;
 }
 

@@ -7,12 +7,14 @@
 #include <math.h>
 
 #include "reference/sampler.h"
+#include "shaders/shared.h"
 #include "twin_box.h"
 #include "twin_camera.h"
 #include "twin_film.h"
 #include "twin_leave.h"
 #include "twin_normalize.h"
 #include "twin_phong.h"
+#include "twin_power.h"
 #include "twin_ray.h"
 #include "twin_sampler.h"
 #include "twin_scalar.h"
@@ -80,7 +82,7 @@ static double ulps(float got, double right) {
 
 static void sampler_has_the_same_bits(void **state) {
     (void)state;
-    static float in[CASES * 5], out[CASES * 4];
+    static float in[CASES * 5], out[CASES * 6];
     for (uint32_t i = 0; i < CASES; i++) {
         uint32_t words[5] = {random_bits() >> random_bits() % 32, i % 512, i / 512, random_bits() >> random_bits() % 32, i % 3};
         memcpy(&in[5 * i], words, sizeof words);
@@ -88,13 +90,15 @@ static void sampler_has_the_same_bits(void **state) {
     RUN(kernel_twin_sampler, in, out, CASES);
     uint32_t control = 0;
     for (uint32_t i = 0; i < CASES; i++) {
-        uint32_t words[5], bits[2], other[2];
+        uint32_t words[5], bits[2], other[2], independent[2];
         memcpy(words, &in[5 * i], sizeof words);
         sampler_bits(bits, words[0], words[1], words[2], words[3], words[4]);
         sampler_bits(other, words[0], words[1], words[2], words[3] + 1, words[4]);
+        sampler_independent_bits(independent, words[0], words[1], words[2], words[3], words[4]);
         for (int k = 0; k < 2; k++) {
-            assert_int_equal(bits_of(out[4 * i + k]), bits[k]);
-            assert_true(out[4 * i + 2 + k] == (float)(bits[k] >> 8) * 0x1p-24f && out[4 * i + 2 + k] < 1.0f);
+            assert_int_equal(bits_of(out[6 * i + k]), bits[k]);
+            assert_int_equal(bits_of(out[6 * i + 4 + k]), independent[k]);
+            assert_true(out[6 * i + 2 + k] == (float)(bits[k] >> 8) * 0x1p-24f && out[6 * i + 2 + k] < 1.0f);
             control += bits[k] != other[k];
         }
     }
@@ -113,6 +117,27 @@ static void sampler_is_stratified(void **state) {
         }
         assert_int_equal(cells, 0xffff);
     }
+}
+
+// 2^16 independent numbers in 256 cells, chi-squared with 255 degrees of freedom: from 163 to 374 with a probability of 1 - 1e-5; the points of Sobol, which are
+// far too even for that, are the control. Neighbours do not follow each other: the correlation of pairs is within 4.5 deviations of 0.
+static void independent_samples_are_random(void **state) {
+    (void)state;
+    enum { COUNT = 1 << 16, CELLS = 256 };
+    double cells[2][CELLS] = {{0}}, chi[2] = {0, 0}, correlation = 0;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        uint32_t bits[2], even[2];
+        sampler_independent_bits(bits, 5, 17, 4, i, SAMPLER_PAIR_FILM);
+        sampler_bits(even, 5, 17, 4, i, SAMPLER_PAIR_FILM);
+        cells[0][bits[0] >> 28 << 4 | bits[1] >> 28]++;
+        cells[1][even[0] >> 28 << 4 | even[1] >> 28]++;
+        correlation += (bits[0] * 0x1p-32 - 0.5) * (bits[1] * 0x1p-32 - 0.5);
+    }
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < CELLS; i++) chi[k] += (cells[k][i] - COUNT / CELLS) * (cells[k][i] - COUNT / CELLS) / (COUNT / CELLS);
+    assert_true(chi[0] > 163 && chi[0] < 374);
+    assert_false(chi[1] > 163 && chi[1] < 374);
+    assert_true(fabs(correlation) <= 4.5 * sqrt(COUNT) / 12);
 }
 
 static void camera_direction_is_to_the_bit(void **state) {
@@ -424,6 +449,39 @@ static void powers_and_falloff(void **state) {
     }
 }
 
+// x^y where the sizes of x and y make it hard, each in turn: everyday exponents, x next to 1 with large ones, results next to underflow, x above 1.
+static void hard_power(float *x, float *y, int i) {
+    *x = random_in(1e-6f, 1), *y = random_in(0, 64);
+    if (i % 4 == 1) *x = 1 - random_unit() * ldexpf(1, -(int)(random_bits() % 24)), *y = ldexpf(random_unit(), (int)(random_bits() % 24));
+    if (i % 4 == 2) *y = -120 / log2f(*x) * random_in(0.9f, 1);
+    if (i % 4 == 3) *x = ldexpf(*x, (int)(random_bits() % 100)), *y = random_in(0, 1.2f);
+}
+
+static void own_power_is_right_to_4_ulp(void **state) {
+    (void)state;
+    enum { COUNT = 16 * CASES };
+    static float in[2 * COUNT], out[COUNT];
+    for (int i = 0; i < COUNT; i++) hard_power(&in[2 * i], &in[2 * i + 1], i);
+    static const float ends[][2] = {{0, 0}, {0, 3}, {1, 1e30f}, {0.9f, 1e30f}, {NAN, 2}, {0x1p-126f, 1}, {2, 127}, {2, 128}, {0.25f, 0.5f}};
+    static const float right_ends[] = {1, 0, 1, 0, 0, 0x1p-126f, 0x1p127f, INFINITY, 0.5f};
+    memcpy(in, ends, sizeof ends);
+    const struct kernel_constant own = {CONSTANT_POWER, POWER_OWN};
+    fixture_run(&(struct fixture_job){FIXTURE_KERNEL(twin_power), .constants = &own, .constant_count = 1, .in = in, .in_bytes = sizeof in,
+                                      .out = out, .out_bytes = sizeof out, .count = COUNT});
+    int caught = 0, cases = 0;
+    for (int i = 0; i < COUNT; i++) {
+        double right = pow(in[2 * i], in[2 * i + 1]);
+        if (i < (int)(sizeof right_ends / sizeof *right_ends)) {
+            if (out[i] != right_ends[i]) fail_msg("%g^%g is %g", in[2 * i], in[2 * i + 1], out[i]);
+        } else if (right >= 0x1p-126 && right < 0x1p127) {
+            if (!(ulps(out[i], right) <= 4)) fail_msg("%a^%a is off by %g ulp", in[2 * i], in[2 * i + 1], ulps(out[i], right));
+            caught += ulps(out[i], right * (1 + 8 * 0x1p-23)) > 4;
+            cases++;
+        }
+    }
+    assert_true(cases > COUNT * 9 / 10 && caught > cases / 2);
+}
+
 static void normalize_survives_any_length(void **state) {
     (void)state;
     static float in[CASES * 3], out[CASES * 6];
@@ -510,6 +568,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sampler_has_the_same_bits),
         cmocka_unit_test(sampler_is_stratified),
+        cmocka_unit_test(independent_samples_are_random),
         cmocka_unit_test(camera_direction_is_to_the_bit),
         cmocka_unit_test(triangles_agree_with_fp64),
         cmocka_unit_test(triangles_at_the_edge_of_meaning),
@@ -519,6 +578,7 @@ int main(void) {
         cmocka_unit_test(boxes_at_the_edge_of_meaning),
         cmocka_unit_test(phong_agrees_with_fp64),
         cmocka_unit_test(powers_and_falloff),
+        cmocka_unit_test(own_power_is_right_to_4_ulp),
         cmocka_unit_test(normalize_survives_any_length),
         cmocka_unit_test(leaving_a_surface),
         cmocka_unit_test(rays_come_to_a_safe_scale),

@@ -8,12 +8,15 @@
 #include "base/image.h"
 #include "bvh/bvh.h"
 #include "effects/plan.h"
+#include "render/lattice.h"
 #include "scene/scene.h"
 
 struct reference_params {
     uint32_t width, height, spp, seed;
     uint32_t effects; // EFFECT_* bits that run
     uint32_t aovs;    // GN_AOV_* bits
+    struct lattice lattice;   // the pixels that are rendered; zeroed: all
+    bool independent_samples; // instead of Sobol points
 };
 
 // Pictures: colour is the mean over the samples, linear, 3 channels; the AOVs as gnomon.h says, empty when not asked for.

@@ -59,8 +59,9 @@ static void add_surface(struct pixel *pixel, const struct ref_ray *ray, const st
 }
 
 static void add_sample(struct pixel *pixel, const struct picture *picture, uint32_t x, uint32_t y, uint32_t sample) {
+    const struct reference_params *params = picture->params;
     float offset[2] = {0.5f, 0.5f};
-    if (picture->params->effects & EFFECT_ANTIALIASING) sampler_film(offset, picture->params->seed, x, y, sample, picture->params->spp);
+    if (params->effects & EFFECT_ANTIALIASING) sampler_film(offset, params->independent_samples, params->seed, x, y, sample, params->spp);
     struct gn_ray from = camera_ray(&picture->camera, x, y, offset);
     struct ref_ray ray;
     struct crossing crossing;
@@ -94,12 +95,12 @@ static bool render_some(void *data, size_t begin, size_t end, unsigned thread) {
     (void)thread;
     struct picture *picture = data;
     const struct reference_params *params = picture->params;
+    uint32_t width = picture->film->color.width, stride = params->lattice.stride ? params->lattice.stride : 1;
     uint64_t rays = 0, nonfinite = 0;
     for (size_t index = begin; index < end; index++) {
         struct pixel pixel = {.object = -1, .primitive = -1};
-        for (uint32_t sample = 0; sample < params->spp; sample++) {
-            add_sample(&pixel, picture, (uint32_t)(index % params->width), (uint32_t)(index / params->width), sample);
-        }
+        uint32_t x = params->lattice.x + stride * (uint32_t)(index % width), y = params->lattice.y + stride * (uint32_t)(index / width);
+        for (uint32_t sample = 0; sample < params->spp; sample++) add_sample(&pixel, picture, x, y, sample);
         store(picture->film, index, &pixel);
         rays += pixel.rays;
         nonfinite += pixel.finite < params->spp;
@@ -110,7 +111,8 @@ static bool render_some(void *data, size_t begin, size_t end, unsigned thread) {
 }
 
 static bool film_init(struct reference_film *out, struct context *ctx, const struct reference_params *params) {
-    uint32_t width = params->width, height = params->height;
+    uint32_t width = lattice_side(params->width, params->lattice.x, params->lattice.stride);
+    uint32_t height = lattice_side(params->height, params->lattice.y, params->lattice.stride);
     if (!image_init(&out->color, ctx, width, height, 3, "the picture")) return false;
     if (params->aovs & GN_AOV_DEPTH && !image_init(&out->depth, ctx, width, height, 1, "the depth layer")) return false;
     if (params->aovs & GN_AOV_NORMAL && !image_init(&out->normal, ctx, width, height, 3, "the normal layer")) return false;
@@ -125,7 +127,7 @@ bool reference_render(struct reference_film *out, struct context *ctx, const str
     picture.world = ref_world_make(scene, bvh, params->effects);
     picture.camera = camera_rays_make(&scene->camera, params->width, params->height);
     size_t grain = CHUNK_SAMPLES / params->spp;
-    if (!parallel_for_progress(ctx, "reference", (size_t)params->width * params->height, grain, render_some, &picture)) goto fail;
+    if (!parallel_for_progress(ctx, "reference", (size_t)out->color.width * out->color.height, grain, render_some, &picture)) goto fail;
     out->rays = picture.rays;
     out->nonfinite_pixels = picture.nonfinite_pixels;
     return true;

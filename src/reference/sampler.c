@@ -43,10 +43,16 @@ void sampler_bits(uint32_t bits[2], uint32_t seed, uint32_t x, uint32_t y, uint3
     bits[1] = owen_scramble(sobol_second(shuffled), hash_pair(key, 2));
 }
 
-void sampler_film(float offset[2], uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t spp) {
+void sampler_independent_bits(uint32_t bits[2], uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t pair) {
+    uint32_t key = hash_pair(hash_pair(hash_pair(hash_pair(hash(seed), x), y), pair), index);
+    bits[0] = hash_pair(key, 0);
+    bits[1] = hash_pair(key, 1);
+}
+
+void sampler_film(float offset[2], bool independent, uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t spp) {
     offset[0] = offset[1] = 0.5f;
     if (spp == 1) return;
     uint32_t bits[2];
-    sampler_bits(bits, seed, x, y, index, SAMPLER_PAIR_FILM);
+    (independent ? sampler_independent_bits : sampler_bits)(bits, seed, x, y, index, SAMPLER_PAIR_FILM);
     for (int i = 0; i < 2; i++) offset[i] = (float)(bits[i] >> 8) * 0x1p-24f;
 }

@@ -1,7 +1,8 @@
-// The sampler's fp32 numbers on the CPU, with the same bits as shaders/sampler.glsl: Owen-scrambled Sobol points, counter-based.
+// The sampler's fp32 numbers on the CPU, with the same bits as shaders/sampler.glsl: Owen-scrambled Sobol points, or independent ones; counter-based.
 #ifndef REFERENCE_SAMPLER_H
 #define REFERENCE_SAMPLER_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 // Pairs of dimensions, as in sampler.glsl.
@@ -10,7 +11,10 @@
 // Two numbers of 32 random bits for sample `index` of pixel (x, y).
 void sampler_bits(uint32_t bits[2], uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t pair);
 
+// The same, independent of each other and of those of other samples.
+void sampler_independent_bits(uint32_t bits[2], uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t pair);
+
 // Where in its pixel sample `index` of `spp` lies, in [0, 1): the centre when there is but one.
-void sampler_film(float offset[2], uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t spp);
+void sampler_film(float offset[2], bool independent, uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t spp);
 
 #endif

@@ -7,7 +7,6 @@
 #include "kernels/trace_again.h"
 #include "kernels/trace_fp64.h"
 #include "kernels/trace_refine.h"
-#include "shaders/shared.h"
 
 struct embedded { const char *name; const uint32_t *spirv; size_t size; };
 
@@ -21,6 +20,12 @@ static const struct embedded KERNELS[] = {
     [KERNEL_PENDING_AGAIN] = {"pending_again", kernel_pending_again, sizeof kernel_pending_again},
 };
 
+static const uint32_t KNOB_CONSTANTS[] = {
+#define X(number, id, name, positions) [KNOB_##id] = CONSTANT_##id,
+    KNOBS(X)
+#undef X
+};
+
 bool tier_available(struct context *ctx, const struct device *device, uint32_t tier) {
     if (tier != TIER_FP64 || device->has_fp64) return true;
     return fail(ctx, GN_NO_DEVICE, "accuracy 'fp64' needs a device with doubles (shaderFloat64), and %s has none; 'exact' needs none",
@@ -30,9 +35,10 @@ bool tier_available(struct context *ctx, const struct device *device, uint32_t t
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,
                         const struct kernel_specialization *specialization, const struct kernel_binding *bindings, size_t binding_count,
                         uint32_t push_size) {
-    struct kernel_constant constants[EFFECT_COUNT + 5];
+    struct kernel_constant constants[EFFECT_COUNT + KNOB_COUNT + 5];
     size_t count = 0;
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) constants[count++] = (struct kernel_constant){i, specialization->effects >> i & 1};
+    for (uint32_t i = 0; i < KNOB_COUNT; i++) constants[count++] = (struct kernel_constant){KNOB_CONSTANTS[i], specialization->knobs[i]};
     constants[count++] = (struct kernel_constant){CONSTANT_TIER, specialization->tier};
     constants[count++] = (struct kernel_constant){CONSTANT_AOVS, specialization->aovs};
     constants[count++] = (struct kernel_constant){CONSTANT_MAX_STEPS, device->max_loop_steps};

@@ -3,6 +3,7 @@
 #define RENDER_KERNELS_H
 
 #include "device/kernel.h"
+#include "shaders/shared.h"
 
 enum kernel_name {
     KERNEL_RENDER,
@@ -21,6 +22,7 @@ struct kernel_specialization {
     uint32_t aovs;          // GN_AOV_* bits
     bool any_hit;           // trace kernel: occlusion only
     bool resolve;           // render kernel: over the pending samples of the exact tier
+    uint32_t knobs[KNOB_COUNT]; // positions; 0 is the default
 };
 
 // Whether the device has what a tier needs; else GN_NO_DEVICE, with what is missing.

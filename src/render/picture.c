@@ -2,6 +2,7 @@
 // can be dispatched again when some of its invocations ran out of steps.
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "render/kernels.h"
@@ -31,6 +32,7 @@ struct pass {
     struct pending_work pending_work;
     struct pieces pieces;
     struct render_film *out;
+    uint32_t width, height;         // of the film: the picture's, or those of its lattice
     uint32_t band_rows;             // of a full band
     uint64_t work_done, work_total; // groups × samples
     double trace_start;
@@ -40,9 +42,9 @@ struct pass {
 
 static bool make_film(struct pass *p) {
     struct context *ctx = p->ctx;
-    uint32_t width = p->params->width, rows = BAND_PIXELS / width / TILE_SIDE * TILE_SIDE;
+    uint32_t width = p->width, rows = BAND_PIXELS / width / TILE_SIDE * TILE_SIDE;
     if (rows < TILE_SIDE) rows = TILE_SIDE;
-    p->band_rows = rows < p->params->height ? rows : p->params->height;
+    p->band_rows = rows < p->height ? rows : p->height;
     uint32_t aovs = p->params->aovs, shade = aovs & (GN_AOV_DEPTH | GN_AOV_NORMAL);
     const VkFormat real = VK_FORMAT_R32G32B32A32_SFLOAT, whole = VK_FORMAT_R32G32B32A32_SINT;
     return storage_image_init(&p->film, ctx, p->device, "film", real, width, p->band_rows) &&
@@ -64,6 +66,7 @@ static bool make_kernel(struct pass *p) {
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) p->bindings[p->binding_count++] = others[i];
     p->specialization = (struct kernel_specialization){.tier = p->params->tier, .effects = p->params->effects, .aovs = p->params->aovs};
+    memcpy(p->specialization.knobs, p->params->knobs, sizeof p->specialization.knobs);
     enum kernel_name name = p->params->tier == TIER_FP64 ? KERNEL_RENDER_FP64 : KERNEL_RENDER;
     return render_kernel_init(&p->kernel, p->ctx, p->device, name, &p->specialization, p->bindings, p->binding_count,
                               sizeof(struct render_args));
@@ -96,12 +99,14 @@ static void make_args(struct pass *p, const struct scene *scene) {
         .corner = vec4_of(camera.corner, 1.0f / p->ds.scale),
         .du = vec4_of(camera.du, 0),
         .dv = vec4_of(camera.dv, 0),
-        .width = params->width,
-        .height = params->height,
+        .width = p->width,
+        .height = p->height,
         .spp = params->spp,
         .seed = params->seed,
         .light_count = p->ds.light_count,
         .root = p->ds.root,
+        .stride = params->lattice.stride ? params->lattice.stride : 1,
+        .phase = params->lattice.y * params->lattice.stride + params->lattice.x,
     };
 }
 
@@ -178,8 +183,8 @@ static uint32_t tile_stride(uint32_t tiles) {
 }
 
 static void store_color(struct pass *p, uint32_t band_y, uint32_t rows, const vec4 *sums, const vec4 *residues) {
-    float *to = p->out->color.pixels + 3 * (size_t)band_y * p->params->width;
-    for (size_t i = 0; i < (size_t)rows * p->params->width; i++, to += 3) {
+    float *to = p->out->color.pixels + 3 * (size_t)band_y * p->width;
+    for (size_t i = 0; i < (size_t)rows * p->width; i++, to += 3) {
         double finite = (double)sums[i].w - (double)residues[i].w, inverse = finite > 0 ? 1 / finite : 0;
         to[0] = (float)(((double)sums[i].x - residues[i].x) * inverse);
         to[1] = (float)(((double)sums[i].y - residues[i].y) * inverse);
@@ -189,8 +194,8 @@ static void store_color(struct pass *p, uint32_t band_y, uint32_t rows, const ve
 
 static void store_aovs(struct pass *p, uint32_t band_y, uint32_t rows, const vec4 *shade, const int32_t *ids) {
     struct render_film *out = p->out;
-    size_t start = (size_t)band_y * p->params->width;
-    for (size_t i = 0; i < (size_t)rows * p->params->width; i++) {
+    size_t start = (size_t)band_y * p->width;
+    for (size_t i = 0; i < (size_t)rows * p->width; i++) {
         float hits = (float)ids[4 * i + 2];
         if (out->depth.pixels) out->depth.pixels[start + i] = hits > 0 ? shade[i].w / hits : INFINITY;
         if (out->normal.pixels) {
@@ -199,6 +204,7 @@ static void store_aovs(struct pass *p, uint32_t band_y, uint32_t rows, const vec
             normal[1] = hits > 0 ? shade[i].y / hits : 0;
             normal[2] = hits > 0 ? shade[i].z / hits : 0;
         }
+        if (out->undecided.pixels) out->undecided.pixels[start + i] = (float)ids[4 * i + 3];
         if (!out->id.pixels) continue;
         out->id.pixels[2 * (start + i)] = (float)ids[4 * i];
         out->id.pixels[2 * (start + i) + 1] = (float)ids[4 * i + 1];
@@ -208,7 +214,7 @@ static void store_aovs(struct pass *p, uint32_t band_y, uint32_t rows, const vec
 // Reads the band back into the picture.
 static bool read_band(struct pass *p, uint32_t band_y, uint32_t rows) {
     struct context *ctx = p->ctx;
-    size_t pixels = (size_t)rows * p->params->width;
+    size_t pixels = (size_t)rows * p->width;
     vec4 *first = array_alloc(ctx, pixels, sizeof *first, "the film read back");
     vec4 *second = array_alloc(ctx, pixels, sizeof *second, "the film read back");
     bool ok = first && second && storage_image_download(&p->film, ctx, p->device, rows, first) &&
@@ -233,11 +239,11 @@ static bool clear_film(struct pass *p) {
 }
 
 static bool render_band(struct pass *p, uint32_t band_y) {
-    uint32_t left = p->params->height - band_y, rows = left < p->band_rows ? left : p->band_rows;
+    uint32_t left = p->height - band_y, rows = left < p->band_rows ? left : p->band_rows;
     if (band_y > 0 && !clear_film(p)) return false;
     p->args.band_y = band_y;
     p->args.band_rows = rows;
-    p->args.tile_count = tiles_of(p->params->width, rows);
+    p->args.tile_count = tiles_of(p->width, rows);
     p->args.tile_stride = tile_stride(p->args.tile_count);
     uint32_t spp = p->params->spp, chunk = p->params->tier == TIER_EXACT ? CHUNK_SAMPLES_EXACT : CHUNK_SAMPLES;
     for (uint32_t begin = 0; begin < spp; begin += chunk) {
@@ -248,21 +254,25 @@ static bool render_band(struct pass *p, uint32_t band_y) {
 }
 
 static bool render_bands(struct pass *p) {
-    p->work_total = (uint64_t)tiles_of(p->params->width, p->params->height) * p->params->spp;
+    p->work_total = (uint64_t)tiles_of(p->width, p->height) * p->params->spp;
     p->trace_start = clock_seconds();
-    for (uint32_t y = 0; y < p->params->height; y += p->band_rows)
+    for (uint32_t y = 0; y < p->height; y += p->band_rows)
         if (!render_band(p, y)) return false;
     return true;
 }
 
 // ------------------------------------------------------------------------------------------------------------ together
 
-static bool make_images(struct render_film *out, struct context *ctx, const struct render_params *params) {
-    uint32_t w = params->width, h = params->height;
+static bool make_images(struct pass *p) {
+    struct render_film *out = p->out;
+    struct context *ctx = p->ctx;
+    const struct render_params *params = p->params;
+    uint32_t w = p->width, h = p->height;
     return image_init(&out->color, ctx, w, h, 3, "the picture") &&
            (!(params->aovs & GN_AOV_DEPTH) || image_init(&out->depth, ctx, w, h, 1, "the depth picture")) &&
            (!(params->aovs & GN_AOV_NORMAL) || image_init(&out->normal, ctx, w, h, 3, "the normal picture")) &&
-           (!(params->aovs & GN_AOV_ID) || image_init(&out->id, ctx, w, h, 2, "the id picture"));
+           (!(params->aovs & GN_AOV_ID) || image_init(&out->id, ctx, w, h, 2, "the id picture")) &&
+           (!(params->aovs & GN_AOV_UNDECIDED) || image_init(&out->undecided, ctx, w, h, 1, "the picture of undecided rays"));
 }
 
 static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh *bvh) {
@@ -300,7 +310,9 @@ bool render_picture(struct render_film *out, struct context *ctx, struct device 
     *out = (struct render_film){0};
     uint32_t tile_groups = params->tile_pixels ? (params->tile_pixels + GROUP_SIZE - 1) / GROUP_SIZE : 0;
     struct pass p = {.ctx = ctx, .device = device, .params = params, .out = out, .pieces = pieces_make(tile_groups)};
-    bool ok = tier_available(ctx, device, params->tier) && make_images(out, ctx, params) && run_pass(&p, scene, bvh);
+    p.width = lattice_side(params->width, params->lattice.x, params->lattice.stride);
+    p.height = lattice_side(params->height, params->lattice.y, params->lattice.stride);
+    bool ok = tier_available(ctx, device, params->tier) && make_images(&p) && run_pass(&p, scene, bvh);
     pass_finish(&p);
     if (!ok) render_film_finish(out);
     return ok;
@@ -311,5 +323,6 @@ void render_film_finish(struct render_film *film) {
     image_finish(&film->depth);
     image_finish(&film->normal);
     image_finish(&film->id);
+    image_finish(&film->undecided);
     *film = (struct render_film){0};
 }

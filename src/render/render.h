@@ -6,19 +6,23 @@
 #include "bvh/bvh.h"
 #include "device/device.h"
 #include "effects/plan.h"
+#include "render/lattice.h"
 #include "scene/scene.h"
 
 struct render_params {
     uint32_t width, height, spp, seed;
     uint32_t tier;                  // TIER_*
     uint32_t effects;               // EFFECT_* bits that run
-    uint32_t aovs;                  // GN_AOV_* bits
+    uint32_t aovs;                  // GN_AOV_* bits that a kernel can fill: not ERROR and ULP
     uint32_t tile_pixels;           // pixels of a piece of work; 0: measured
+    struct lattice lattice;         // the pixels that are rendered; zeroed: all
+    uint32_t knobs[KNOB_COUNT];     // positions; 0 is the default
 };
 
 // As reference_film, plus what the device did.
 struct render_film {
     struct image color, depth, normal, id;
+    struct image undecided;         // rays of each pixel that the tier's first stage left undecided, 1 channel; empty when not asked for
     uint64_t rays, nonfinite_pixels, undecided_rays;
     uint64_t second_stage_rays;     // undecided rays that fp64 decided on the device; the rest took integers on the host
     double pipeline_ms, upload_ms, trace_ms;
