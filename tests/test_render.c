@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "gnomon.h"
 
@@ -19,6 +20,7 @@ static struct gn_error error;
 static int open_device(void **state) {
     (void)state;
     const struct gn_device_params params = {.select = getenv("GNOMON_DEVICE"), .validate = true};
+    mkdir(TEST_OUTPUT_DIR, 0777);
     device = gn_device_create(&params, &error);
     if (!device) print_message("no device: %s\n", error.message);
     return 0;
@@ -212,6 +214,48 @@ static void same_seed_same_bits(void **state) {
     gn_scene_destroy(scene);
 }
 
+// A small scene with every length multiplied by 2^exponent, which is exact.
+static struct gn_scene *scaled_scene(int exponent) {
+    const char *path = TEST_OUTPUT_DIR "/scaled.json";
+    double s = ldexp(1, exponent);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file,
+            "{\"version\": 1, \"ambient\": [0.1,0.1,0.1], \"film\": {\"width\": 64, \"height\": 48, \"spp\": 2},\n"
+            " \"camera\": {\"position\": [%.9g,%.9g,%.9g], \"look_at\": [0,0,0], \"fov_y_deg\": 50},\n"
+            " \"materials\": {\"m\": {\"diffuse\": [0.7,0.6,0.5], \"specular\": [0.3,0.3,0.3], \"shininess\": 20}},\n"
+            " \"lights\": [{\"type\": \"point\", \"position\": [%.9g,%.9g,%.9g]}],\n"
+            " \"shapes\": [{\"type\": \"sphere\", \"center\": [0,%.9g,0], \"radius\": %.9g, \"material\": \"m\"},\n"
+            "  {\"type\": \"triangle\", \"vertices\": [[%.9g,%.9g,%.9g],[%.9g,%.9g,%.9g],[0,%.9g,%.9g]], \"material\": \"m\"}]}\n",
+            s, 0.75 * s, 3 * s, -2 * s, 4 * s, 3 * s, 0.25 * s, 0.75 * s, -3 * s, -0.5 * s, 2 * s, 3 * s, -0.5 * s, 2 * s, -0.5 * s, -4 * s);
+    assert_int_equal(fclose(file), 0);
+    return loaded(path);
+}
+
+// No epsilon is absolute: the picture of a scene scaled by a power of two is the same, to the bit.
+static void any_scale_is_the_same_picture(void **state) {
+    (void)state;
+    if (!device) skip();
+    static const int exponents[] = {-60, -20, 1, 20, 60};
+    for (int tier = 0; tier < GN_ACCURACY_COUNT; tier++) {
+        if (tier == GN_FP64 && !gn_device_info(device)->has_fp64) continue;
+        const struct gn_render_params params = {.accuracy = (enum gn_accuracy)tier};
+        struct gn_scene *scene = scaled_scene(0);
+        struct gn_picture *right = rendered(scene, &params);
+        gn_scene_destroy(scene);
+        for (int i = 0; i < 5; i++) {
+            scene = scaled_scene(exponents[i]);
+            struct gn_picture *picture = rendered(scene, &params);
+            size_t bytes = 64 * 48 * 3 * sizeof(float);
+            if (memcmp(gn_picture_pixels(picture, 0), gn_picture_pixels(right, 0), bytes) != 0)
+                fail_msg("tier %d: at 2^%d the picture is another", tier, exponents[i]);
+            gn_picture_destroy(picture);
+            gn_scene_destroy(scene);
+        }
+        gn_picture_destroy(right);
+    }
+}
+
 // Samples that come in several dispatches are the same as in one: spp beyond a chunk, and a sum that is resumed.
 static void more_samples_come_closer(void **state) {
     (void)state;
@@ -304,8 +348,8 @@ static void exact_hits_are_the_reference(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(seed_figures_are_their_formulas), cmocka_unit_test(scenes_agree_with_the_reference),
-        cmocka_unit_test(same_seed_same_bits),             cmocka_unit_test(more_samples_come_closer),
-        cmocka_unit_test(exact_hits_are_the_reference),
+        cmocka_unit_test(same_seed_same_bits),             cmocka_unit_test(any_scale_is_the_same_picture),
+        cmocka_unit_test(more_samples_come_closer),        cmocka_unit_test(exact_hits_are_the_reference),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }
