@@ -261,16 +261,16 @@ static void more_samples_come_closer(void **state) {
     (void)state;
     if (!device) skip();
     struct gn_scene *scene = loaded(scene_path("shadow_gallery.json"));
-    const struct gn_render_params many = {.width = 48, .height = 48, .spp = 256}, few = {.width = 48, .height = 48, .spp = 16, .seed = 9},
-                                  one = {.width = 48, .height = 48, .spp = 1};
+    const struct gn_render_params many = {.width = 32, .height = 32, .spp = 128}, few = {.width = 32, .height = 32, .spp = 16, .seed = 9},
+                                  one = {.width = 32, .height = 32, .spp = 1};
     struct gn_picture *truth = gn_render(NULL, scene, &many, &error);
     assert_non_null(truth);
     const struct gn_render_params *params[] = {&one, &few, &many};
     double rmse[3] = {0, 0, 0};
     for (int i = 0; i < 3; i++) {
         struct gn_picture *picture = rendered(scene, params[i]);
-        for (int k = 0; k < 48 * 48 * 3; k++) rmse[i] += pow(gn_picture_pixels(picture, 0)[k] - gn_picture_pixels(truth, 0)[k], 2);
-        rmse[i] = sqrt(rmse[i] / (48 * 48 * 3));
+        for (int k = 0; k < 32 * 32 * 3; k++) rmse[i] += pow(gn_picture_pixels(picture, 0)[k] - gn_picture_pixels(truth, 0)[k], 2);
+        rmse[i] = sqrt(rmse[i] / (32 * 32 * 3));
         gn_picture_destroy(picture);
     }
     assert_true(rmse[2] < 1e-3 && rmse[1] < 0.5 * rmse[0] && rmse[2] < rmse[1]);
