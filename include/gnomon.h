@@ -138,9 +138,9 @@ enum gn_aov {
     GN_AOV_UNDECIDED = 32, // rays of the pixel that the tier's first stage left undecided, over all samples; 1 channel
 };
 
-// Milliseconds. startup: opening the device; pipeline: making kernels; upload: filling the device's memory; total: all of these and what lies
-// between them, from gn_render's or gn_trace's point of view.
-struct gn_time { double total, startup, scene, bvh, pipeline, upload, trace, output; };
+// Milliseconds. startup: opening the device; pipeline: making kernels; upload: filling the device's memory; reference: rendering once more
+// for the layers that compare; total: all of these and what lies between them, from gn_render's or gn_trace's point of view.
+struct gn_time { double total, startup, scene, bvh, pipeline, upload, trace, reference, output; };
 
 struct gn_render_params {
     uint32_t width, height;         // pixels [the scene's]
@@ -160,6 +160,8 @@ struct gn_render_stats {
     uint64_t rays;                  // all kinds
     uint64_t nonfinite_pixels;      // samples that came out NaN or infinite and were dropped, counted by pixel
     uint64_t undecided_rays;        // whose decision needed more than the tier's first stage
+    uint64_t second_stage_rays;     // of these, how many fp64 on the device decided
+    uint64_t host_rays;             // and how many were left to exact arithmetic on the host
     struct gn_time time_ms;         // `output` is filled by gn_picture_save
     double mrays_per_s;             // rays / trace time
 };
@@ -220,6 +222,7 @@ struct gn_trace_params {
 struct gn_trace_stats {
     char accuracy[16];
     uint64_t rays, hits, undecided_rays;
+    uint64_t second_stage_rays, host_rays;  // what decided the undecided ones, as in gn_render_stats
     struct gn_time time_ms;     // `trace` is the shooting alone
     double mrays_per_s;
 };

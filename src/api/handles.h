@@ -22,6 +22,7 @@ struct gn_scene {
 
 struct gn_picture {
     struct image color, depth, normal, id; // those that were not asked for are empty
+    struct image error, ulp, undecided;    // likewise
     enum transfer transfer;                // for 8-bit files
     struct gn_render_stats stats;
 };

@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "measure/layers.h"
 
 void gn_picture_destroy(struct gn_picture *picture) {
     if (!picture) return;
@@ -18,6 +19,9 @@ void gn_picture_destroy(struct gn_picture *picture) {
     image_finish(&picture->depth);
     image_finish(&picture->normal);
     image_finish(&picture->id);
+    image_finish(&picture->error);
+    image_finish(&picture->ulp);
+    image_finish(&picture->undecided);
     free(picture);
 }
 
@@ -35,6 +39,12 @@ const float *gn_picture_pixels(const struct gn_picture *picture, uint32_t aov) {
         return picture->normal.pixels;
     case GN_AOV_ID:
         return picture->id.pixels;
+    case GN_AOV_ERROR:
+        return picture->error.pixels;
+    case GN_AOV_ULP:
+        return picture->ulp.pixels;
+    case GN_AOV_UNDECIDED:
+        return picture->undecided.pixels;
     default:
         return NULL;
     }
@@ -111,12 +121,15 @@ struct side_file {
     enum transfer transfer; // of the view
 };
 
-#define SIDE_FILES 3
+#define SIDE_FILES 6
 
 static void list_side_files(struct side_file files[SIDE_FILES], const struct gn_picture *picture) {
     files[0] = (struct side_file){"depth", &picture->depth, view_of_depth, TRANSFER_SRGB};
     files[1] = (struct side_file){"normal", &picture->normal, view_of_normal, TRANSFER_LINEAR};
     files[2] = (struct side_file){"id", &picture->id, view_of_id, TRANSFER_LINEAR};
+    files[3] = (struct side_file){"error", &picture->error, view_of_error, TRANSFER_SRGB};
+    files[4] = (struct side_file){"ulp", &picture->ulp, view_of_ulp, TRANSFER_SRGB};
+    files[5] = (struct side_file){"undecided", &picture->undecided, view_of_undecided, TRANSFER_SRGB};
 }
 
 // "dir/name.png" and "depth" make "dir/name.depth.png"; to be freed.
@@ -179,6 +192,9 @@ static bool save_exr(const struct gn_picture *picture, struct context *ctx, cons
         {&picture->depth, {"Z"}},
         {&picture->normal, {"normal.X", "normal.Y", "normal.Z"}},
         {&picture->id, {"id.object", "id.primitive"}},
+        {&picture->error, {"error.R", "error.G", "error.B"}},
+        {&picture->ulp, {"ulp"}},
+        {&picture->undecided, {"undecided"}},
     };
     struct image_layer layers[sizeof all / sizeof *all];
     size_t count = 0;

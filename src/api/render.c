@@ -7,11 +7,17 @@
 
 #include "base/clock.h"
 #include "device/machine_memory.h"
+#include "measure/layers.h"
 #include "reference/reference.h"
 #include "render/render.h"
 
 #define MOST_PIXELS 65535u      // along one side of a film
 #define MOST_SAMPLES (1u << 24) // of a pixel
+
+// Layers that both sides can fill, those that take both sides, and those that only a device has.
+#define RENDERED_LAYERS ((uint32_t)(GN_AOV_DEPTH | GN_AOV_NORMAL | GN_AOV_ID))
+#define COMPARED_LAYERS ((uint32_t)(GN_AOV_ERROR | GN_AOV_ULP))
+#define DEVICE_LAYERS (COMPARED_LAYERS | GN_AOV_UNDECIDED)
 
 // ------------------------------------------------------------------------------------------------------------- accuracy
 
@@ -59,8 +65,8 @@ bool job_make(struct job *out, struct context *ctx, const struct gn_scene *scene
     if (out->width > MOST_PIXELS || out->height > MOST_PIXELS)
         return fail(ctx, GN_USAGE, "a picture of %u × %u pixels: at most %u along a side", out->width, out->height, MOST_PIXELS);
     if (out->spp > MOST_SAMPLES) return fail(ctx, GN_USAGE, "%u samples per pixel: at most %u", out->spp, MOST_SAMPLES);
-    if (out->aovs & ~(uint32_t)(GN_AOV_DEPTH | GN_AOV_NORMAL | GN_AOV_ID))
-        return fail(ctx, GN_USAGE, "unknown layers 0x%x", out->aovs & ~(uint32_t)(GN_AOV_DEPTH | GN_AOV_NORMAL | GN_AOV_ID));
+    if (out->aovs & ~(RENDERED_LAYERS | DEVICE_LAYERS))
+        return fail(ctx, GN_USAGE, "unknown layers 0x%x", out->aovs & ~(RENDERED_LAYERS | DEVICE_LAYERS));
     if (!reference && !tier_of_accuracy(&out->tier, &out->accuracy, ctx, params->accuracy)) return false;
     return plan_make(&out->plan, ctx, &scene->scene,
                      &(struct plan_params){.spp = out->spp, .disable = params->disable, .no_prune = params->no_prune});
@@ -69,7 +75,9 @@ bool job_make(struct job *out, struct context *ctx, const struct gn_scene *scene
 // Memory is handed out before it is there, so what a picture will take is held against what the machine has; the kernel would end the
 // process instead. The 3 bytes are the codes of a PNG.
 static bool picture_fits(const struct job *job, struct context *ctx) {
-    uint32_t channels = 3 + (job->aovs & GN_AOV_DEPTH ? 1 : 0) + (job->aovs & GN_AOV_NORMAL ? 3 : 0) + (job->aovs & GN_AOV_ID ? 2 : 0);
+    static const uint32_t channels_of[] = {1, 3, 2, 3, 1, 1}; // of the layers, by bit
+    uint32_t channels = job->aovs & COMPARED_LAYERS ? 8 : 3;  // two pictures with their depths
+    for (uint32_t i = 0; i < sizeof channels_of / sizeof *channels_of; i++) channels += job->aovs >> i & 1 ? channels_of[i] : 0;
     uint64_t needed = (uint64_t)job->width * job->height * (channels * sizeof(float) + 3), left = machine_memory_free();
     if (needed <= left) return true;
     return fail(ctx, GN_LIMIT, "a picture of %u × %u pixels needs %.1f GB of memory, of which %.1f GB is free", job->width, job->height,
@@ -86,7 +94,7 @@ static bool render_on_device(struct gn_picture *picture, struct context *ctx, st
         .seed = job->seed,
         .tier = job->tier,
         .effects = job->plan.effects,
-        .aovs = job->aovs,
+        .aovs = (job->aovs & ~COMPARED_LAYERS) | (job->aovs & GN_AOV_ULP ? GN_AOV_DEPTH : 0),
         .tile_pixels = job->tile_pixels,
     };
     if (!render_picture(&film, ctx, device, &scene->scene, &scene->bvh, &params) || !device_validated(device, ctx)) {
@@ -94,8 +102,10 @@ static bool render_on_device(struct gn_picture *picture, struct context *ctx, st
         return false;
     }
     picture->color = film.color, picture->depth = film.depth, picture->normal = film.normal, picture->id = film.id;
+    picture->undecided = film.undecided;
     struct gn_render_stats *stats = &picture->stats;
     stats->rays = film.rays, stats->nonfinite_pixels = film.nonfinite_pixels, stats->undecided_rays = film.undecided_rays;
+    stats->second_stage_rays = film.second_stage_rays, stats->host_rays = film.undecided_rays - film.second_stage_rays;
     stats->time_ms.pipeline = film.pipeline_ms, stats->time_ms.upload = film.upload_ms, stats->time_ms.trace = film.trace_ms;
     return true;
 }
@@ -122,6 +132,23 @@ static bool render_on_cpu(struct gn_picture *picture, struct context *ctx, const
     return true;
 }
 
+// The layers that compare with the reference, which renders the same picture for them.
+static bool compare_layers(struct gn_picture *picture, struct context *ctx, const struct gn_scene *scene, const struct job *job) {
+    bool want_error = job->aovs & GN_AOV_ERROR, want_ulp = job->aovs & GN_AOV_ULP;
+    if (!want_error && !want_ulp) return true;
+    struct job same = *job;
+    same.aovs = GN_AOV_DEPTH;
+    struct gn_picture right = {.transfer = TRANSFER_LINEAR};
+    bool done = render_on_cpu(&right, ctx, scene, &same) &&
+                (!want_error || layer_of_error(&picture->error, ctx, &picture->color, &right.color)) &&
+                (!want_ulp || layer_of_ulp(&picture->ulp, ctx, &picture->depth, &right.depth));
+    picture->stats.time_ms.reference = right.stats.time_ms.trace;
+    image_finish(&right.color);
+    image_finish(&right.depth);
+    if (!(job->aovs & GN_AOV_DEPTH)) image_finish(&picture->depth);
+    return done;
+}
+
 // Millions per second; 0 when nothing was measured.
 static double mrays_per_s(uint64_t rays, double ms) { return ms > 0 ? (double)rays / (1e3 * ms) : 0; }
 
@@ -132,8 +159,13 @@ struct gn_picture *gn_render(struct gn_device *device, struct gn_scene *scene, c
     if (!picture) return NULL;
     double bvh_ms = scene->bvh_ms, start = clock_seconds();
     struct job job;
+    if (!device && params && params->aovs & DEVICE_LAYERS) {
+        fail(&ctx, GN_USAGE, "the layers error, ulp and undecided are about a device; the reference has none of them");
+        goto fail;
+    }
     if (!job_make(&job, &ctx, scene, params, !device) || !picture_fits(&job, &ctx) || !scene_bvh(scene, &ctx)) goto fail;
     if (!(device ? render_on_device(picture, &ctx, &device->device, scene, &job) : render_on_cpu(picture, &ctx, scene, &job))) goto fail;
+    if (!compare_layers(picture, &ctx, scene, &job)) goto fail;
 
     picture->transfer = scene->scene.film.transfer;
     struct gn_render_stats *stats = &picture->stats;
@@ -164,6 +196,7 @@ static bool trace_on_device(struct gn_hit *hits, struct gn_trace_stats *stats, s
     if (!render_trace(hits, &done, ctx, device, &scene->scene, &scene->bvh, &shoot, rays, count)) return false;
     snprintf(stats->accuracy, sizeof stats->accuracy, "%s", accuracy);
     stats->hits = done.hits, stats->undecided_rays = done.undecided_rays;
+    stats->second_stage_rays = done.second_stage_rays, stats->host_rays = done.undecided_rays - done.second_stage_rays;
     stats->time_ms.pipeline = done.pipeline_ms, stats->time_ms.upload = done.upload_ms, stats->time_ms.trace = done.trace_ms;
     return device_validated(device, ctx);
 }

@@ -60,8 +60,9 @@ static const struct option options[] = {
      "leave an effect out; may be repeated, or a comma list (gnomon plan SCENE lists them)"},
     {"no-prune", 0, NULL, FLAG, AT(no_prune), PICTURE | COMMAND_PLAN, 0, 0, NULL,
      "run every effect, whether the scene calls for it or not"},
-    {"aov", 0, "LAYER", SET, AT(aovs), COMMAND_RENDER, 0, 0, "depth|normal|id",
-     "also write depth, normal or id; may be repeated, or a comma list. Layers of an .exr; beside a .png or .pfm: name.depth.png …"},
+    {"aov", 0, "LAYER", SET, AT(aovs), COMMAND_RENDER, 0, 0, "depth|normal|id|error|ulp|undecided",
+     "also write depth, normal or id; error (the colour's, against the reference), ulp (the depth's) or undecided (rays that the tier's first "
+     "stage left open); may be repeated, or a comma list. Layers of an .exr; beside a .png or .pfm: name.depth.png …"},
     {"tile-pixels", 0, "N", WHOLE, AT(tile_pixels), PICTURE, 1, MOST_WHOLE, NULL,
      "pixels of one piece of device work [measured]; the picture does not depend on it"},
     {"stats", 0, NULL, FLAG, AT(stats), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL, "print where the time went, and what was counted"},

@@ -19,6 +19,8 @@ static json_t *as_json(const struct run *run, const struct gn_picture *picture, 
         {"rays", json_integer((json_int_t)stats->rays)},
         {"nonfinite_pixels", json_integer((json_int_t)stats->nonfinite_pixels)},
         {"undecided_rays", json_integer((json_int_t)stats->undecided_rays)},
+        {"second_stage_rays", json_integer((json_int_t)stats->second_stage_rays)},
+        {"host_rays", json_integer((json_int_t)stats->host_rays)},
         {"time_ms", json_times(time, true)},
         {"mrays_per_s", json_number(stats->mrays_per_s)},
     };
@@ -35,7 +37,7 @@ static void tell(struct run *run, const struct gn_picture *picture, const struct
     if (!run->settings.stats) return;
     say_times(run, time, true);
     run_say(run, "  rays       %12" PRIu64, stats->rays);
-    run_say(run, "  undecided  %12" PRIu64 "  that needed more than the tier's first stage", stats->undecided_rays);
+    say_undecided(run, stats->undecided_rays, stats->second_stage_rays, stats->host_rays);
     run_say(run, "  nonfinite  %12" PRIu64 "  pixels with samples that came out NaN or infinite", stats->nonfinite_pixels);
     run_say(run, "  effects    %s", stats->effects);
 }

@@ -1,5 +1,7 @@
 #include "cli/report.h"
 
+#include <inttypes.h>
+
 const char *device_name(const struct gn_device *device) { return device ? gn_device_info(device)->name : "reference (CPU, fp64)"; }
 
 const char *device_driver(const struct gn_device *device) { return device ? gn_device_info(device)->driver : "none"; }
@@ -11,7 +13,10 @@ json_t *json_times(const struct gn_time *time, bool output) {
         {"trace", json_ms(time->trace)},
     };
     json_t *times = JSON_MEMBERS(members);
-    if (times && output) json_object_set_new(times, "output", json_ms(time->output));
+    if (times && output) {
+        json_object_set_new(times, "reference", json_ms(time->reference));
+        json_object_set_new(times, "output", json_ms(time->output));
+    }
     return times;
 }
 
@@ -22,6 +27,14 @@ void say_times(struct run *run, const struct gn_time *time, bool output) {
     run_say(run, "  pipeline   %12.1f ms  making kernels", time->pipeline);
     run_say(run, "  upload     %12.1f ms  filling the device's memory", time->upload);
     run_say(run, "  trace      %12.1f ms  shooting", time->trace);
+    if (time->reference > 0) run_say(run, "  reference  %12.1f ms  rendering once more, to compare", time->reference);
     if (output) run_say(run, "  output     %12.1f ms  writing files", time->output);
     run_say(run, "  total      %12.1f ms  since the program began", time->total);
+}
+
+void say_undecided(struct run *run, uint64_t undecided, uint64_t second_stage, uint64_t host) {
+    run_say(run, "  undecided  %12" PRIu64 "  rays that needed more than the tier's first stage", undecided);
+    if (undecided == 0) return;
+    run_say(run, "    fp64     %12" PRIu64 "  of them decided by the second stage on the device", second_stage);
+    run_say(run, "    exact    %12" PRIu64 "  of them by exact arithmetic on the host", host);
 }

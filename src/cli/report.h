@@ -14,4 +14,7 @@ json_t *json_times(const struct gn_time *time, bool output);
 // The same as a table for people.
 void say_times(struct run *run, const struct gn_time *time, bool output);
 
+// How many rays were undecided, and what decided them.
+void say_undecided(struct run *run, uint64_t undecided, uint64_t second_stage, uint64_t host);
+
 #endif

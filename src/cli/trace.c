@@ -37,6 +37,8 @@ static json_t *as_json(const struct gn_trace_stats *stats, const struct gn_devic
         {"hits", json_integer((json_int_t)stats->hits)},
         {"accuracy", json_words(stats->accuracy)},
         {"undecided_rays", json_integer((json_int_t)stats->undecided_rays)},
+        {"second_stage_rays", json_integer((json_int_t)stats->second_stage_rays)},
+        {"host_rays", json_integer((json_int_t)stats->host_rays)},
         {"device", json_words(device_name(device))},
         {"driver", json_words(device_driver(device))},
         {"time_ms", json_times(time, false)},
@@ -53,7 +55,7 @@ static bool report(struct run *run, const struct gn_trace_stats *stats, const st
     run_say(run, "%.3g million rays a second; %.2f s in all", stats->mrays_per_s, 1e-3 * time.total);
     if (run->settings.stats) {
         say_times(run, &time, false);
-        run_say(run, "  undecided  %12" PRIu64 "  that needed more than the tier's first stage", stats->undecided_rays);
+        say_undecided(run, stats->undecided_rays, stats->second_stage_rays, stats->host_rays);
     }
     return !run->settings.json || run_result(run, as_json(stats, device, &time));
 }
