@@ -15,7 +15,7 @@ struct ray {
     real3 o;
     real3 d;             // largest component in [1, 2)
     real tmin, tmax;   // open interval, in units of d
-    real t_scale;      // multiply t by this to have it in units of the direction that was given
+    int exponent;      // d is the direction that was given, times 2^-exponent
     uint self;
 };
 
@@ -30,6 +30,11 @@ hit hit_none() { return hit(INFINITY, 0.0, 0.0, SELF_NONE, -1, -1); }
 bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 bool is_finite(vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 bool is_nan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
+// A device may take it for zero.
+bool is_denormal(vec3 v) {
+    uvec3 bits = floatBitsToUint(v) & 0x7fffffffu;
+    return any(lessThan(bits - 1u, uvec3(0x007fffffu)));
+}
 #ifdef FP64
 bool is_finite(double x) { return abs(x) <= 1.797e308lf; }
 #endif
@@ -40,29 +45,41 @@ float power_of_two(int exponent) { return uintBitsToFloat(uint(exponent + 127) <
 // Exponent of |x|, x normal: 2^e <= |x| < 2^(e+1). Zero and denormals give -127.
 int exponent_of(float x) { return int((floatBitsToUint(x) >> 23) & 0xffu) - 127; }
 
-// A ray through o (device units) along d (any scale, not zero, finite), for t in units of d as given.
 #ifdef FP64
 // 2^exponent for -1022 <= exponent <= 1023.
 double power_of_two_double(int exponent) { return packDouble2x32(uvec2(0u, uint(exponent + 1023) << 20)); }
+#define power_of_two_real power_of_two_double
+#else
+#define power_of_two_real power_of_two
+#endif
 
+// x·2^exponent for |exponent| <= 378, in three steps: none of them leaves the range of numbers unless the product does.
+real times_power_of_two(real x, int exponent) {
+    int first = exponent / 3, second = (exponent - first) / 2;
+    return ((x * power_of_two_real(first)) * power_of_two_real(second)) * power_of_two_real(exponent - first - second);
+}
+
+// A ray through o (device units) along d (any scale, not zero, finite), for t in units of d as given.
+#ifdef FP64
 ray ray_make(dvec3 o, dvec3 d, double tmin, double tmax, uint self) {
     double largest = max(abs(d.x), max(abs(d.y), abs(d.z)));
     int exponent = clamp(int((unpackDouble2x32(largest).y >> 20) & 0x7ffu) - 1023, -1000, 1000);
     double up = power_of_two_double(-exponent), down = power_of_two_double(exponent);
-    return ray(o, d * up, tmin * down, tmax * down, up, self);
+    return ray(o, d * up, tmin * down, tmax * down, exponent, self);
 }
 #else
 ray ray_make(vec3 o, vec3 d, float tmin, float tmax, uint self) {
     float largest = max(abs(d.x), max(abs(d.y), abs(d.z)));
-    float lift = 1.0;
+    int lift = 0;
     if (largest < 1.2e-38) { // denormal: two steps
-        lift = power_of_two(100);
-        largest *= lift;
+        lift = 100;
+        d *= power_of_two(lift);
+        largest *= power_of_two(lift);
     }
     int exponent = clamp(exponent_of(largest), -126, 126);
-    float up = power_of_two(-exponent);
-    float down = power_of_two(exponent);
-    return ray(o, (d * lift) * up, (tmin * down) / lift, (tmax * down) / lift, up * lift, self);
+    d *= power_of_two(-exponent);
+    exponent -= lift;
+    return ray(o, d, times_power_of_two(tmin, exponent), times_power_of_two(tmax, exponent), exponent, self);
 }
 #endif
 

@@ -54,7 +54,8 @@ bool refine_sphere(dvec3 origin, dvec3 direction, vec3 center, float radius, boo
     double q = abs(b) + root;
     bool cancels = farther ? b < 0.0lf : b > 0.0lf;
     double value = cancels ? c / q : q / a;
-    tuv = dvec3(b < 0.0lf ? -value : value, 0.0lf, 0.0lf);
+    bool negative = b < 0.0lf || (b == 0.0lf && !farther);
+    tuv = dvec3(negative ? -value : value, 0.0lf, 0.0lf);
     double q_error = 6.0e-16lf * dot_double(abs(l), abs(direction)) + f_error / max(root, 1e-300lf);
     return f > 2.0lf * f_error && q_error <= ENOUGH * q && (!cancels || 6.0e-16lf * (l2 + r * r) <= ENOUGH * abs(c));
 }

@@ -102,15 +102,23 @@ void main() {
     int steps = int(MAX_STEPS);
     float scale = args.base.w;
     precise real3 from_base = real3(o) - real3(args.base.xyz);
-    ray r = ray_make(from_base * scale, real3(valid ? d : vec3(1.0)), real(tmin) * scale, real(tmax) * scale, SELF_NONE);
+    ray r = ray_make(from_base * scale, real3(valid ? d : vec3(1.0)), 0.0, 0.0, SELF_NONE);
+    int t_exponent = r.exponent + exponent_of(scale); // t in units of r.d is t in units of d, times this power of two
+    r.tmin = times_power_of_two(real(tmin), t_exponent);
+    r.tmax = times_power_of_two(real(tmax), t_exponent);
     search q = traverse(r, ANY_HIT, valid && !empty ? args.root : REF_NONE, steps);
     // An origin that lost bits on its way to device coordinates is not the ray that was given.
-    bool lossy = TIER == TIER_EXACT && valid && !empty && loses_bits(real3(o), real3(args.base.xyz), from_base, scale);
+    bool lossy = loses_bits(real3(o), real3(args.base.xyz), from_base, scale) || is_denormal(o) || is_denormal(d);
+    lossy = lossy && TIER == TIER_EXACT && valid && !empty;
     bool undecided = lossy || search_undecided(q, ANY_HIT);
     hit h = q.best;
     if (TIER == TIER_EXACT && !ANY_HIT && !undecided && h.object >= 0) undecided = !refine(r, h);
-    if (undecided) h = hit_none();
-    float t = float(h.object < 0 ? INFINITY : h.t * r.t_scale / scale);
+    float t = float(h.object < 0 ? INFINITY : times_power_of_two(h.t, -t_exponent));
+    if (TIER == TIER_EXACT && !ANY_HIT && abs(t) < 1.2e-38) undecided = true; // denormal: rounded twice, or taken for zero
+    if (undecided) {
+        h = hit_none();
+        t = float(INFINITY);
+    }
     if (ANY_HIT && h.object >= 0) h.object = 0;
     store_hit(number, t, h, (valid ? 0u : HIT_INVALID) | (undecided ? HIT_UNDECIDED | HIT_OPEN : EARLIER));
     if (undecided) list_undecided(number);

@@ -287,15 +287,17 @@ static float random_unit(void) {
     return (float)(random_state >> 8) * 0x1p-24f;
 }
 
-// Rays from around the middle of the bumpy sphere: exact lattice directions, axes and diagonals among them, and random ones.
+// Rays from around the middle of the bumpy sphere: exact lattice directions, axes and diagonals among them, and random ones; some very long or short, and
+// some that reach backwards.
 static void make_rays(struct gn_ray *rays, size_t count) {
     for (size_t i = 0; i < count; i++) {
         bool lattice = i % 2 == 0;
+        int exponent = i % 11 == 0 ? -140 : i % 13 == 0 ? 124 : 0;
         for (int k = 0; k < 3; k++) {
             rays[i].origin[k] = lattice ? 0 : 0.2f * (random_unit() - 0.5f);
-            rays[i].direction[k] = lattice ? (float)((int)(random_unit() * 9) - 4) : random_unit() - 0.5f;
+            rays[i].direction[k] = ldexpf(lattice ? (float)((int)(random_unit() * 9) - 4) : random_unit() - 0.5f, exponent);
         }
-        rays[i].tmin = i % 5 == 0 ? 0.125f : 0;
+        rays[i].tmin = i % 5 == 0 ? 0.125f : i % 5 == 1 ? -INFINITY : 0;
         rays[i].tmax = i % 7 == 0 ? 1 : INFINITY;
     }
 }

@@ -1,4 +1,4 @@
-// In: d, tmin, tmax. Out: d, tmin, tmax, t_scale of the ray at a safe scale.
+// In: d, tmin, tmax. Out: d, tmin, tmax, exponent of the ray at a safe scale.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "ray.glsl"
@@ -11,5 +11,5 @@ void main() {
     put3(6u * i, r.d);
     result[6u * i + 3u] = r.tmin;
     result[6u * i + 4u] = r.tmax;
-    result[6u * i + 5u] = r.t_scale;
+    result[6u * i + 5u] = float(r.exponent);
 }
