@@ -89,7 +89,7 @@ struct gn_device_params {
     const struct gn_host *host;
 };
 
-// Opens a device. Returns NULL and fills *error (GN_NO_DEVICE, GN_USAGE for a selector that names none) on failure.
+// Opens a device. Returns NULL and fills *error (GN_NO_DEVICE, also when `select` names none) on failure.
 struct gn_device *gn_device_create(const struct gn_device_params *params, struct gn_error *error);
 
 // Closes a device; NULL is allowed. All its pictures stay valid: they live in host memory.

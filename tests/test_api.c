@@ -112,7 +112,7 @@ static void devices_are_listed(void **state) {
     assert_true(gn_device_list(&(struct gn_device_params){.select = "no such device"}, infos, 16, &count, &selected, &f->error));
     assert_int_equal(selected, -1);
     assert_null(gn_device_create(&(struct gn_device_params){.select = "no such device"}, &f->error));
-    assert_int_equal(f->error.status, GN_USAGE);
+    assert_int_equal(f->error.status, GN_NO_DEVICE);
 }
 
 static void plan_says_why(void **state) {

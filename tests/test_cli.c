@@ -146,7 +146,7 @@ static void environment_is_heard(void **state) {
     need_device();
     struct program_result result =
         program_run(&(struct program_call){.words = "render scene.json -o a.png", .environment = "GNOMON_DEVICE=frobnicator"});
-    assert_int_equal(result.code, GN_USAGE);
+    assert_int_equal(result.code, GN_NO_DEVICE);
     assert_non_null(strstr(result.err, "frobnicator"));
     program_free(&result);
     result = program_run(
@@ -388,7 +388,7 @@ static void devices_lists_devices(void **state) {
     result = program_expect("devices", 0, "");
     assert_non_null(strstr(result.out, "Used: "));
     program_free(&result);
-    result = program_expect("devices --device frobnicator", GN_USAGE, "frobnicator");
+    result = program_expect("devices --device frobnicator", GN_NO_DEVICE, "frobnicator");
     program_free(&result);
 }
 

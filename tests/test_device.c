@@ -135,7 +135,7 @@ static void test_selector_without_device(void **state) {
         struct device device;
         struct gn_error error;
         assert_false(open_device(&device, &error, selectors[i], false, NULL));
-        assert_int_equal(error.status, GN_USAGE);
+        assert_int_equal(error.status, GN_NO_DEVICE);
         assert_true(has(error.message, selectors[i]) && has(error.message, fixture_device()->info.name));
         assert_null(device.instance);
     }

@@ -81,7 +81,7 @@ static bool list(struct run *run, struct listing *listing) {
     else if (!run_result(run, as_json(listing)))
         return false;
     if (listing->selected >= 0) return true;
-    if (run->settings.device) return run_fail(run, GN_USAGE, "'%s' is none of these devices", run->settings.device);
+    if (run->settings.device) return run_fail(run, GN_NO_DEVICE, "'%s' is none of these devices", run->settings.device);
     return run_fail(run, GN_NO_DEVICE, "none of these devices can be used");
 }
 

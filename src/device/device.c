@@ -44,7 +44,7 @@ static const struct candidate *choose(struct context *ctx, const struct candidat
     } else if (!selector || !*selector) {
         fail(ctx, GN_NO_DEVICE, "no Vulkan device can be used%s; " NO_DRIVER_HINT, list);
     } else {
-        fail(ctx, GN_USAGE, "no Vulkan device is called '%.100s'%s; a device is named by number, part of the name, uuid:…, cpu or gpu",
+        fail(ctx, GN_NO_DEVICE, "no Vulkan device is called '%.100s'%s; a device is named by number, part of the name, uuid:…, cpu or gpu",
              selector, list);
     }
     return NULL;

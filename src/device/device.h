@@ -58,7 +58,7 @@ struct device {
     char validation_message[1024];      // the first of them
 };
 
-// Opens a device. On failure reports why (GN_NO_DEVICE; GN_USAGE for a selector that names none, listing what there is).
+// Opens a device. On failure reports why (GN_NO_DEVICE; for a selector that names none, listing what there is).
 bool device_init(struct device *out, struct context *ctx, const struct gn_device_params *params);
 // Closes it; accepts a half-made or zeroed one.
 void device_finish(struct device *device);
