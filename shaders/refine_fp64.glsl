@@ -3,11 +3,13 @@
 // U = 2^-53. Triangle: f(p, q) = d·(E×B), E = q-p, B = q-o. With components up to |d|, e and m the products' absolute sum is at most 6 |d| e m, and there are eight
 // roundings on the way of each: off by less than 48 U |d| e m < 2^-47 |d| e m. The same way A·N by 2^-47 m e², d·N by 2^-47 |d| e². Demanding 2^-29 relative of
 // each leaves every quotient right to 2^-27, an eighth of an fp32 ulp before its rounding.
+// Things smaller than SMALLEST may be of coordinates that lost bits.
 // Sphere: F, b, |l|² - r² as in tier_exact.glsl with U for u; the root that would cancel is taken as (|l|² - r²)/q.
 #ifndef REFINE_FP64_GLSL
 #define REFINE_FP64_GLSL
 
 const double ENOUGH = 1.862645149230957e-9lf; // 2^-29
+const double SMALLEST = 3.2e-27lf; // 2^-88: 2^-29 of it is still 2^9 times what a flushed denormal loses
 
 dvec3 cross_double(dvec3 a, dvec3 b) {
     precise dvec3 value = a.yzx * b.zxy - a.zxy * b.yzx;
@@ -38,7 +40,7 @@ bool refine_triangle(dvec3 origin, dvec3 direction, vec3 v0, vec3 v1, vec3 v2, o
     const double bound = 1.4210854715202004e-14lf; // 2^-46
     double n_error = bound * e * e, reach = largest_double(direction), edge_error = bound * reach * e * m;
     return edge_error <= ENOUGH * min(abs(v), min(abs(w), abs(d_sum) / 3.0lf)) && n_error * m <= ENOUGH * abs(t) &&
-           n_error * reach <= ENOUGH * abs(d_n);
+           n_error * reach <= ENOUGH * abs(d_n) && min(m, e) > SMALLEST;
 }
 
 // `farther`: the root with + before √F.
@@ -57,7 +59,7 @@ bool refine_sphere(dvec3 origin, dvec3 direction, vec3 center, float radius, boo
     bool negative = b < 0.0lf || (b == 0.0lf && !farther);
     tuv = dvec3(negative ? -value : value, 0.0lf, 0.0lf);
     double q_error = 6.0e-16lf * dot_double(abs(l), abs(direction)) + f_error / max(root, 1e-300lf);
-    return f > 2.0lf * f_error && q_error <= ENOUGH * q && (!cancels || 6.0e-16lf * (l2 + r * r) <= ENOUGH * abs(c));
+    return min(r, l2) > SMALLEST && f > 2.0lf * f_error && q_error <= ENOUGH * q && (!cancels || 6.0e-16lf * (l2 + r * r) <= ENOUGH * abs(c));
 }
 
 #endif

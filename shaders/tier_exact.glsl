@@ -6,7 +6,10 @@
 // Triangle. A vertex relative to the origin, A = v - o, is right to u. The shear's entry S = -d_x · (1/d_z) is right to 6.1 u and at most 1, so that a sheared
 // coordinate x = A_x + S·A_z is off by at most e = u(|A_x| + 8.1|A_z| + |x|) <= 11.2 u m, m the largest |component| of any A. An edge function p_x q_y - p_y q_x
 // of coordinates up to M is off by 4 e M + 2 e² from its factors and by 4 u M² <= 8 u m M from its own roundings (M <= 2m): together below
-// 53 u m (M + 12 u m). BAND = 64 u m (M + 16 u m) + 2^-120, the last for underflow (2^-900 in fp64).
+// 53 u m (M + 12 u m). BAND = 64 u m (M + 16 u m) + REAL_TINY, the last for underflow.
+// Geometry is fp32, and what is denormal in device coordinates may be flushed or have lost bits: a coordinate may be off by another 2^-126. In fp32 BAND covers
+// that wherever m > 2^-106, REAL_TINY below. In fp64 it adds less than 2^-122 M to an edge function, which BAND covers where m > 2^-75; below, M < 2^-74 and
+// REAL_TINY does. t may be off by LOST = 2^-120 more.
 // t is the mean of the vertices' depths z (right to 7.1 u) weighted by the edge functions: a weight's error moves t by the spread of z at most:
 // |t error| <= 3 BAND spread/(|D| - 3 BAND) + 17.1 u Z, Z the largest |z|; used with 4 and 32. A triangle that is hit at all is hit between its smallest and largest z.
 //
@@ -15,6 +18,8 @@
 #ifndef TIER_EXACT_GLSL
 #define TIER_EXACT_GLSL
 #include "tier_robust.glsl"
+
+const real LOST = 7.5231638e-37; // 2^-120
 
 // What the first stage says of a ray and a primitive. If it is hit, then at a t in [lo, hi]; `certain` says that it is.
 // A certain miss has lo = +inf, hi = -inf.
@@ -44,7 +49,7 @@ verdict triangle_exact(real3 o, shear s, real3 v0, real3 v1, real3 v2) {
     if (low < -band && high > band) return MISS;
     real za = sheared(s.z, a), zb = sheared(s.z, b), zc = sheared(s.z, c);
     real nearest = min(za, min(zb, zc)), farthest = max(za, max(zb, zc));
-    real slack = max(abs(nearest), abs(farthest)) * (32.0 * REAL_UNIT);
+    real slack = max(abs(nearest), abs(farthest)) * (32.0 * REAL_UNIT) + LOST;
     precise real det = (u + v) + w;
     precise real depth = (u * za + v * zb) + w * zc;
     real sure = abs(det) - 4.0 * band;
@@ -76,7 +81,7 @@ verdict sphere_exact(real3 o, real3 d, real3 center, real radius, real root_sign
     real root_lo = sqrt(max(f - f_error, 0.0)) * (1.0 - 13.0 * REAL_UNIT), root_hi = sqrt(f + f_error) * (1.0 + 13.0 * REAL_UNIT);
     real lo = root_sign < 0.0 ? b - root_hi : b + root_lo;
     real hi = root_sign < 0.0 ? b - root_lo : b + root_hi;
-    real slack = b_error + (abs(b) + root_hi) * (10.0 * REAL_UNIT);
+    real slack = b_error + (abs(b) + root_hi) * (10.0 * REAL_UNIT) + LOST;
     real inverse = 1.0 / a;
     real middle = root_sign < 0.0 ? b - sqrt(max(f, 0.0)) : b + sqrt(max(f, 0.0));
     lo = (lo - slack) * inverse;
@@ -90,7 +95,7 @@ verdict sphere_exact_again(real3 o, real3 d, real3 center) {
     precise real3 l = center - o;
     real inverse = 1.0 / dot_precise(d, d);
     real t = 2.0 * dot_precise(l, d) * inverse;
-    real error = 2.0 * dot(abs(l), abs(d)) * inverse * (14.0 * REAL_UNIT) + REAL_TINY;
+    real error = 2.0 * dot(abs(l), abs(d)) * inverse * (14.0 * REAL_UNIT) + LOST;
     bool sane = largest(l) < REAL_LARGE;
     return verdict(real3(t, 0.0, 0.0), sane ? t - error : -REAL_MAX, sane ? t + error : REAL_MAX, sane);
 }

@@ -20,6 +20,9 @@ struct search {
     real lo, hi, maybe;
 };
 
+// From farther away than this, 2^60 times the scene's size, a direction component that box.glsl takes for 0 moves a ray all the same.
+const real FAR = 1.152921504606847e18;
+
 search search_nothing() { return search(hit_none(), INFINITY, INFINITY, INFINITY); }
 
 // Whether something that could change the answer was left open.
@@ -104,6 +107,8 @@ void test_sphere(uint number, ray r, inout search q) {
 // by itself (lavapipe before Mesa 23.1 does, after 65535 iterations of all lanes together): each loop's own condition is checked behind it.
 search traverse(ray r, bool any, uint root, inout int steps) {
     search q = search_nothing();
+    bool too_far = TIER == TIER_EXACT && !(largest(r.o) <= FAR);
+    if (too_far) q.maybe = -REAL_MAX;
     slabs slab = slabs_make(r.o, r.d);
     shear s;
     if (TIER != TIER_FAST && HAS_TRIANGLES) s = shear_make(r.d);
@@ -111,7 +116,7 @@ search traverse(ray r, bool any, uint root, inout int steps) {
     uint stack[STACK_SIZE];
     stack[0] = REF_NONE;
     int top = 1;
-    uint ref = root;
+    uint ref = too_far ? REF_NONE : root;
     do {
         steps--;
         while (HAS_BVH && (ref & REF_LEAF) == 0u && steps > 0) {

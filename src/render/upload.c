@@ -33,6 +33,13 @@ static struct word4 point_of(const struct upload *u, const float v[3], uint32_t 
     return word4_of(p, last);
 }
 
+// A corner of a box, moved outward (`side` -1 for the lower one, +1) by what denormal coordinates may lose on the way; for others that is nothing.
+static struct word4 corner_of(const struct upload *u, const float v[3], double side, uint32_t last) {
+    float p[3];
+    for (int i = 0; i < 3; i++) p[i] = (float)(((double)v[i] - u->base[i]) * u->scale + side * 0x1p-120);
+    return word4_of(p, last);
+}
+
 // Where the geometry lies along an axis, or 0. It is not 0 where the extent is at most the distance from the origin: all coordinates are then multiples of
 // the nearer bound's ulp, the base, too, and their differences no larger than that bound, so that they are exact (cf. Sterbenz).
 static float axis_base(float low, float high) {
@@ -121,10 +128,10 @@ static uint32_t root_reference(const struct upload *u) {
 static void write_node(const struct upload *u, uint32_t number, struct word4 *to) {
     uint32_t first = u->bvh->nodes[number].first;
     const struct bvh_node *left = &u->bvh->nodes[first], *right = left + 1;
-    to[0] = point_of(u, left->min, node_reference(u, first));
-    to[1] = point_of(u, left->max, node_reference(u, first + 1));
-    to[2] = point_of(u, right->min, 0);
-    to[3] = point_of(u, right->max, 0);
+    to[0] = corner_of(u, left->min, -1, node_reference(u, first));
+    to[1] = corner_of(u, left->max, +1, node_reference(u, first + 1));
+    to[2] = corner_of(u, right->min, -1, 0);
+    to[3] = corner_of(u, right->max, +1, 0);
 }
 
 // The last node before which there are `inner` inner nodes and which is one itself.
