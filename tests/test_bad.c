@@ -14,6 +14,7 @@ static const struct {
     {"camera_at_itself.json", ":3:48: camera.look_at is the camera's position, expected a point to look at elsewhere"},
     {"camera_fov.json", ":3:73: camera.fov_y_deg is 180, expected a number greater than 0 and less than 180"},
     {"camera_position.json", ":3:13: camera has no 'position', expected 3 numbers"},
+    {"camera_up_along.json", ":3:66: camera.up is along the view, expected a direction across it"},
     {"camera_up_zero.json", ":3:66: camera.up is zero, expected a direction such as [0,1,0]"},
     {"center_overflow.json", ":3:47: shapes[0].center[1] is 1e39, expected a number within the range of fp32, ±3.4028235e38"},
     {"center_short.json", ":3:43: shapes[0].center is a list of 2, expected a list of 3 numbers"},

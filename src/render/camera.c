@@ -15,7 +15,7 @@ static struct vec cross(struct vec a, struct vec b) { return (struct vec){a.y * 
 // Lengths of fp32 vectors neither overflow nor underflow in fp64.
 static struct vec normalize(struct vec a) { return scale(a, 1.0 / sqrt(dot(a, a))); }
 
-// `up` made usable: where it is (nearly) parallel to the view, the axis that is farthest from the view stands in.
+// `up` made usable: where it is (nearly) parallel to the view (a scene file's own never is), the axis that is farthest from the view stands in.
 static struct vec choose_up(struct vec up, struct vec forward) {
     struct vec side = cross(forward, up);
     if (dot(side, side) > 1e-24 * dot(up, up)) return up;

@@ -12,6 +12,20 @@
 
 static bool same3(const float a[3], const float b[3]) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
+// Whether `up` is along the view, as far as fp64 can tell (render/camera.c).
+static bool is_along_view(const struct scene_camera *camera) {
+    double view[3], side = 0, view2 = 0, up2 = 0;
+    for (int i = 0; i < 3; i++) view[i] = (double)camera->look_at[i] - camera->position[i];
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double across = view[j] * camera->up[k] - view[k] * camera->up[j];
+        side += across * across;
+        view2 += view[i] * view[i];
+        up2 += (double)camera->up[i] * camera->up[i];
+    }
+    return !(side > 1e-24 * view2 * up2);
+}
+
 static bool read_camera(struct scene_camera *out, const struct json_at *at) {
     static const char *const keys[] = {"position", "look_at", "up", "fov_y_deg", NULL};
     static const float zero[3] = {0};
@@ -24,6 +38,7 @@ static bool read_camera(struct scene_camera *out, const struct json_at *at) {
     if (same3(out->position, out->look_at) && at_member(&member, at, "look_at"))
         return at_fail(&member, "is the camera's position, expected a point to look at elsewhere");
     if (same3(out->up, zero) && at_member(&member, at, "up")) return at_fail(&member, "is zero, expected a direction such as [0,1,0]");
+    if (at_member(&member, at, "up") && is_along_view(out)) return at_fail(&member, "is along the view, expected a direction across it");
     return true;
 }
 
