@@ -42,7 +42,8 @@ struct pass {
 
 static bool make_film(struct pass *p) {
     struct context *ctx = p->ctx;
-    uint32_t width = p->width, rows = BAND_PIXELS / width / TILE_SIDE * TILE_SIDE;
+    uint32_t width = p->width, rows = BAND_PIXELS / width, limit = p->device->properties.limits.maxImageDimension2D;
+    rows = (rows < limit ? rows : limit) / TILE_SIDE * TILE_SIDE;
     if (rows < TILE_SIDE) rows = TILE_SIDE;
     p->band_rows = rows < p->height ? rows : p->height;
     uint32_t aovs = p->params->aovs, shade = aovs & (GN_AOV_DEPTH | GN_AOV_NORMAL);
