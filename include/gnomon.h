@@ -269,6 +269,62 @@ struct gn_compare_result {
 bool gn_compare(const char *path_a, const char *path_b, struct gn_compare_result *result, struct gn_picture **heat,
                 struct gn_error *error);
 
+// ------------------------------------------------------------------------------------------------------------------ cost
+
+// What accuracy costs: settings of one axis at a time (the tier, the offset rule, the samples per pixel, …) and of all together, each with
+// its time on this device and its error against the reference, on a lattice of the picture's pixels that is as dense as the time allows.
+struct gn_cost; // the result of a measurement
+
+struct gn_cost_params {
+    uint32_t width, height; // pixels of the picture in question [the scene's]
+    uint32_t seed;          // of the sampler
+    uint32_t rounds;        // settings take turns, and this is how many turns count, 1 to 64; the time permitting, but three at least [5]
+    double seconds;         // to measure, about; what compiling takes comes on top [60]
+    const struct gn_host *host;
+};
+
+struct gn_cost_row {
+    char axis[16], setting[48];     // "tier" "exact", "samples" "16 per pixel"; the last axis is "together"
+    char accuracy[16];              // the tier
+    uint32_t pixels, spp;           // rendered
+    bool converged;                 // the error is against very many samples, and that of sampling in it; else against the same ones
+    bool base;                      // what the other rows of this axis are to be compared with
+    bool pareto;                    // of the rows with the same kind of error, none is as fast and as close, and better in one of these
+    double time_ms;                 // median of the rounds
+    double time_low_ms, time_high_ms;   // quartiles
+    double picture_ms;              // the median, scaled to all pixels of the picture
+    double rmse, max_abs, flip;     // of the picture against the reference's: linear light, FLIP as gn_compare says
+    uint64_t nonfinite_pixels;
+    double differing_per_million;   // pixels off by more than 1/255
+    double wrong_per_million;       // decisions of the tier about camera rays and rays to lights
+    double t_ulp_max, t_ulp_mean;   // of the tier's t, where the right primitive was hit
+};
+
+// Something that was not measured, and why; `setting` is "" for a whole axis.
+struct gn_cost_skipped {
+    char axis[16], setting[48], because[96];
+};
+
+// Measures. NULL and *error on failure.
+struct gn_cost *gn_cost_measure(struct gn_device *device, struct gn_scene *scene, const struct gn_cost_params *params, struct gn_error *error);
+void gn_cost_destroy(struct gn_cost *cost);
+
+// What came of it; valid until it is destroyed.
+const struct gn_cost_row *gn_cost_rows(const struct gn_cost *cost, uint32_t *count);
+const struct gn_cost_skipped *gn_cost_skipped(const struct gn_cost *cost, uint32_t *count);
+
+struct gn_cost_summary {
+    uint32_t width, height;     // of the picture
+    uint32_t stride[2];         // every so manieth of its pixels was rendered, across and down: for the errors of arithmetic, of sampling
+    uint32_t reference_spp;     // of the latter
+    uint32_t rounds;            // that were taken
+    uint64_t rays;              // whose decisions were judged
+};
+void gn_cost_summary(const struct gn_cost *cost, struct gn_cost_summary *summary);
+
+// Writes a report: one HTML file with charts, pictures and their error maps, for any browser, without a network.
+bool gn_cost_save(const struct gn_cost *cost, const char *path, struct gn_error *error);
+
 #ifdef __GNUC__
 #pragma GCC visibility pop
 #endif

@@ -3,6 +3,7 @@
 #define BASE_IMAGE_H
 
 #include "base/context.h"
+#include "base/file.h"
 
 // Row-major, top row first, channels interleaved. Zeroed is empty.
 struct image {
@@ -36,6 +37,9 @@ struct image_layer {
 bool image_write_png(const struct image *image, struct context *ctx, const char *path, enum transfer transfer);
 bool image_write_pfm(const struct image *image, struct context *ctx, const char *path);
 bool image_write_exr(const struct image_layer *layers, size_t count, struct context *ctx, const char *path);
+
+// A PNG in memory, of 1 or 3 channels, as image_write_png writes it; smaller rather than quick. file_bytes_finish frees it.
+bool image_encode_png(struct file_bytes *out, struct context *ctx, const struct image *image, enum transfer transfer);
 
 // Reads .png (8 or 16 bit, grey or colour, decoded from sRGB to linear, unless the file says that its gamma is 1; alpha is ignored),
 // .exr (channels R, G, B, or Y; half, float or uint; scan lines or tiles, of which the finest level is read) or .pfm (its scale is

@@ -14,7 +14,8 @@ enum {
     COMMAND_PLAN = 1 << 3,
     COMMAND_DEVICES = 1 << 4,
     COMMAND_COMPARE = 1 << 5,
-    COMMAND_ALL = (1 << 6) - 1,
+    COMMAND_COST = 1 << 6,
+    COMMAND_ALL = (1 << 7) - 1,
 };
 
 #define MOST_POSITIONALS 2
@@ -35,11 +36,11 @@ struct settings {
     uint32_t threads;
     const char *device, *output, *rays;
     struct size size;
-    uint32_t spp, seed, repeat, tile_pixels;
+    uint32_t spp, seed, repeat, tile_pixels, rounds;
     int accuracy;       // enum gn_accuracy
     uint32_t aovs;      // enum gn_aov, or-ed
     char disable[1024]; // comma-separated
-    double tolerance;
+    double tolerance, seconds;
     double max_abs, max_flip; // negative: not given
 };
 

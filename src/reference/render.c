@@ -27,21 +27,6 @@ struct pixel {
     uint64_t rays;
 };
 
-// The sequence of fp32 operations that camera.h defines; each assignment rounds.
-static struct gn_ray camera_ray(const struct camera_rays *camera, uint32_t x, uint32_t y, const float offset[2]) {
-    struct gn_ray ray = {.tmin = 0, .tmax = INFINITY};
-    for (int i = 0; i < 3; i++) {
-        float right = (float)x * camera->du[i], down = (float)y * camera->dv[i];
-        float to_pixel = camera->corner[i] + right;
-        to_pixel = to_pixel + down;
-        float within_right = offset[0] * camera->du[i], within_down = offset[1] * camera->dv[i];
-        float within = within_right + within_down;
-        ray.origin[i] = camera->position[i];
-        ray.direction[i] = to_pixel + within;
-    }
-    return ray;
-}
-
 // A sample that fp32 cannot hold is dropped.
 static void add_color(struct pixel *pixel, const double color[3]) {
     for (int i = 0; i < 3; i++) {

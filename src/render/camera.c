@@ -47,3 +47,18 @@ struct camera_rays camera_rays_make(const struct scene_camera *camera, uint32_t 
     store(rays.dv, scale(up, -pixel));
     return rays;
 }
+
+// Each assignment rounds.
+struct gn_ray camera_ray(const struct camera_rays *camera, uint32_t x, uint32_t y, const float offset[2]) {
+    struct gn_ray ray = {.tmin = 0, .tmax = INFINITY};
+    for (int i = 0; i < 3; i++) {
+        float right = (float)x * camera->du[i], down = (float)y * camera->dv[i];
+        float to_pixel = camera->corner[i] + right;
+        to_pixel = to_pixel + down;
+        float within_right = offset[0] * camera->du[i], within_down = offset[1] * camera->dv[i];
+        float within = within_right + within_down;
+        ray.origin[i] = camera->position[i];
+        ray.direction[i] = to_pixel + within;
+    }
+    return ray;
+}

@@ -15,4 +15,7 @@ struct camera_rays { float position[3], corner[3], du[3], dv[3]; };
 // For a film of width × height pixels. fov_y covers the height. Where up is parallel to the view, another up is chosen.
 struct camera_rays camera_rays_make(const struct scene_camera *camera, uint32_t width, uint32_t height);
 
+// The ray through film position (x + offset[0], y + offset[1]), as said above, for t from 0 to infinity.
+struct gn_ray camera_ray(const struct camera_rays *camera, uint32_t x, uint32_t y, const float offset[2]);
+
 #endif
