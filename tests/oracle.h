@@ -1,4 +1,4 @@
-// What right-answer.md says, word for word, in GMP integers and MPFR numbers of 8192 bits: the judge of the judge. Slow, and shares nothing
+// What docs/right-answer.md says, word for word, in GMP integers and MPFR numbers of 8192 bits: the judge of the judge. Slow, and shares nothing
 // with src/.
 //
 // Numbers enter times 2^300, which makes integers of them; all expressions are homogeneous, so that the factor cancels in t, u and v. Roots

@@ -6,7 +6,7 @@
 #include "scene/scene.h"
 
 // Builds the hierarchy of a scene: primitive i < scene_triangle_count is triangle i, the others are spheres, whose boxes are rounded
-// outward (right-answer.md's exact sphere lies inside).
+// outward (docs/right-answer.md's exact sphere lies inside).
 bool bvh_build_scene(struct bvh *out, struct context *ctx, const struct scene *scene);
 
 #endif

@@ -1,8 +1,8 @@
 // Whether and where a ray crosses a triangle or a sphere, and which of two crossings comes first: decided exactly.
 //
 // Each decision is made in two stages. The first is fp64 with a proven bound on its error (derived beside each formula); what it leaves
-// open goes to exact integers. Intervals of t are kept so that most comparisons need neither. The rules, in exact arithmetic on the fp32
-// inputs:
+// open goes to exact integers. Intervals of t are kept so that most comparisons need neither. The rules (docs/right-answer.md says why), in
+// exact arithmetic on the fp32 inputs:
 //
 // Triangle. For an edge from p to q, f(p,q) = d·((q-o)×(p-o)); the ray crosses when U = f(v1,v2), V = f(v2,v0) and W = f(v0,v1) have one
 // sign, where a zero has the sign of its limit as o moves to o + (ε, ε², ε³): exactly one of two neighbours is crossed at their common

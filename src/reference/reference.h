@@ -29,7 +29,7 @@ bool reference_render(struct reference_film *out, struct context *ctx, const str
                       const struct reference_params *params);
 void reference_film_finish(struct reference_film *film);
 
-// Shoots rays with exact decisions; t, u, v within 0.5 ulp (right-answer.md). `any`: only object is filled, 0 or -1.
+// Shoots rays with exact decisions; t, u, v within 0.5 ulp (docs/right-answer.md). `any`: only object is filled, 0 or -1.
 bool reference_trace(struct gn_hit *hits, struct context *ctx, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays,
                      size_t count, bool any);
 
