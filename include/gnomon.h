@@ -86,6 +86,7 @@ struct gn_device_info {
 struct gn_device_params {
     const char *select;    // index, part of the name, "uuid:…", "cpu" or "gpu" [a GPU if there is one, else the CPU]
     bool validate;         // turn the Khronos validation layer on; its messages become errors [off]
+    bool hide_fp64;        // for tests: do as if the device had no doubles
     const struct gn_host *host;
 };
 

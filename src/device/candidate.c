@@ -70,6 +70,9 @@ static bool find_extensions(struct candidate *candidate, VkExtensionProperties *
         const char *name = scratch[i].extensionName;
         if (!strcmp(name, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME)) driver_properties = true;
         if (!strcmp(name, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)) candidate->has_memory_budget = true;
+        if (!strcmp(name, VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME)) {
+            candidate->float_controls_extension = candidate->properties.apiVersion < VK_API_VERSION_1_2;
+        }
         if (!strcmp(name, "VK_KHR_portability_subset")) candidate->portability_subset = true;
     }
     return driver_properties;
@@ -77,12 +80,19 @@ static bool find_extensions(struct candidate *candidate, VkExtensionProperties *
 
 // What only a device of Vulkan 1.1 can be asked.
 static void describe_further(struct candidate *candidate, bool driver_properties) {
+    const bool float_controls = candidate->properties.apiVersion >= VK_API_VERSION_1_2 || candidate->float_controls_extension;
     VkPhysicalDeviceDriverProperties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceFloatControlsProperties floats = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FLOAT_CONTROLS_PROPERTIES,
+                                                      .pNext = driver_properties ? &driver : NULL};
     VkPhysicalDeviceMaintenance3Properties limits = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES,
-                                                     .pNext = driver_properties ? &driver : NULL};
-    VkPhysicalDeviceIDProperties id = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES, .pNext = &limits};
+                                                     .pNext = float_controls ? &floats : floats.pNext};
+    VkPhysicalDeviceSubgroupProperties subgroup = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, .pNext = &limits};
+    VkPhysicalDeviceIDProperties id = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES, .pNext = &subgroup};
     VkPhysicalDeviceProperties2 properties = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &id};
     vkGetPhysicalDeviceProperties2(candidate->physical, &properties);
+    floats.pNext = NULL;
+    candidate->float_controls = floats;
+    candidate->subgroup_size = subgroup.subgroupSize;
     candidate->max_allocation = limits.maxMemoryAllocationSize;
     candidate->driver = driver.driverID;
     memcpy(candidate->driver_info, driver.driverInfo, sizeof driver.driverInfo);

@@ -15,6 +15,9 @@ struct candidate {
     VkDriverId driver;                      // 0 where the driver does not tell
     char driver_info[VK_MAX_DRIVER_INFO_SIZE];
     uint32_t queue_family, timestamp_bits;  // of the first family with compute
+    VkPhysicalDeviceFloatControlsProperties float_controls; // zeroed where the device does not tell
+    uint32_t subgroup_size;
+    bool float_controls_extension;          // offers VK_KHR_shader_float_controls, which must be enabled before Vulkan 1.2
     bool has_memory_budget;                 // offers VK_EXT_memory_budget
     bool portability_subset;                // offers VK_KHR_portability_subset, which must then be enabled
     struct gn_device_info info;

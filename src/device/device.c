@@ -54,6 +54,8 @@ static void adopt(struct device *device, const struct candidate *candidate) {
     device->physical = candidate->physical;
     device->properties = candidate->properties;
     device->max_allocation = candidate->max_allocation;
+    device->float_controls = candidate->float_controls;
+    device->subgroup_size = candidate->subgroup_size;
     device->queue_family = candidate->queue_family;
     device->timestamp_bits = candidate->timestamp_bits;
     device->info = candidate->info;
@@ -67,9 +69,10 @@ static void adopt(struct device *device, const struct candidate *candidate) {
 }
 
 static bool open_handle(struct device *device, struct context *ctx, const struct candidate *candidate) {
-    const char *extensions[2];
+    const char *extensions[3];
     uint32_t extension_count = 0;
     if (candidate->has_memory_budget) extensions[extension_count++] = VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
+    if (candidate->float_controls_extension) extensions[extension_count++] = VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME;
     if (candidate->portability_subset) extensions[extension_count++] = "VK_KHR_portability_subset";
     const VkPhysicalDeviceFeatures features = {
         .shaderFloat64 = device->has_fp64,
@@ -99,6 +102,7 @@ static bool open_device(struct device *device, struct context *ctx, const struct
     bool done = candidates_init(&candidates, &count, ctx, device);
     const struct candidate *candidate = done ? choose(ctx, candidates, count, params->select) : NULL;
     if (candidate) adopt(device, candidate);
+    if (params->hide_fp64) device->has_fp64 = device->info.has_fp64 = false;
     done = candidate && open_handle(device, ctx, candidate) && commands_init(device, ctx);
     free(candidates);
     return done;

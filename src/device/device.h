@@ -17,6 +17,12 @@
 struct buffer;
 struct pipeline;
 
+// What a check of the device's arithmetic found, of fp32 or of fp64 (render/arithmetic.h).
+struct device_arithmetic {
+    bool checked;
+    uint32_t faults; // FAULT_*
+};
+
 // An open device. It must stay where it is: the validation layer's messenger knows its address.
 struct device {
     VkInstance instance;
@@ -29,6 +35,8 @@ struct device {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     VkDeviceSize max_allocation;        // bytes, maxMemoryAllocationSize
+    VkPhysicalDeviceFloatControlsProperties float_controls; // what may be declared of floats (device/float_controls.h); else zero
+    uint32_t subgroup_size;
     VkCommandPool command_pool;
     VkCommandBuffer commands;           // recorded anew for every submission
     VkFence fence;
@@ -39,6 +47,7 @@ struct device {
     struct buffer *staging;             // for data on its way to or from memory that the host cannot see; made when first needed
     struct gn_device_info info;
     bool has_fp64, has_int64;           // enabled on the device
+    struct device_arithmetic arithmetic[2]; // of fp32 and of fp64
     bool has_memory_budget;             // VK_EXT_memory_budget is enabled
     bool software;                      // a CPU device: memory is shared with this process
     bool lost;                          // the driver said so, or a wait was given up while work was running. Nothing more is submitted,

@@ -27,6 +27,7 @@ struct kernel_params {
     const struct kernel_binding *bindings;
     size_t binding_count;                   // at most KERNEL_BINDINGS
     uint32_t push_size;                     // bytes of push constants, at most 128
+    uint32_t float_controls;                // FLOAT_* to declare as far as the device accepts it (device/float_controls.h) [none]
 };
 
 // Zeroed is absent; kernel_finish accepts half-made ones.

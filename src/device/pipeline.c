@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/float_controls.h"
+
 VkDescriptorType binding_type(const struct kernel_binding *binding) {
     if (binding->image) return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
     return binding->buffer->kind == BUFFER_TEXELS ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -18,14 +20,15 @@ bool kernel_fail(const char *name, struct context *ctx, struct device *device, c
 
 // ------------------------------------------------------------------------------------------------------------------- keys
 
-// Numbers of bindings and their kinds, constants, bytes to push, SPIR-V. To be freed.
+// Bytes to push, declarations, numbers of bindings and their kinds, constants, SPIR-V. To be freed.
 static unsigned char *make_key(size_t *size, struct context *ctx, const struct kernel_params *params) {
-    const size_t words = 3 + 2 * params->binding_count + 2 * params->constant_count;
+    const size_t words = 4 + 2 * params->binding_count + 2 * params->constant_count;
     *size = words * sizeof(uint32_t) + params->spirv_size;
     unsigned char *key = array_alloc(ctx, *size, 1, "a pipeline's key");
     if (!key) return NULL;
     uint32_t *word = (uint32_t *)(void *)key;
     *word++ = params->push_size;
+    *word++ = params->float_controls;
     *word++ = (uint32_t)params->binding_count;
     *word++ = (uint32_t)params->constant_count;
     for (size_t i = 0; i < params->binding_count; ++i) {
@@ -72,11 +75,20 @@ static bool init_layout(struct pipeline *out, struct context *ctx, struct device
     return result == VK_SUCCESS || kernel_fail(params->name, ctx, device, "vkCreatePipelineLayout", result);
 }
 
+static bool init_module(struct pipeline *out, struct context *ctx, struct device *device, const struct kernel_params *params) {
+    const uint32_t controls = params->float_controls & float_controls_accepted(&device->float_controls);
+    const size_t size = float_controls_declare(NULL, params->spirv, params->spirv_size, controls);
+    if (!size) return fail(ctx, GN_SHADER, "kernel '%s': its SPIR-V has no entry point", params->name);
+    uint32_t *words = array_alloc(ctx, 1, size, "a kernel's SPIR-V");
+    if (!words) return false;
+    float_controls_declare(words, params->spirv, params->spirv_size, controls);
+    const VkShaderModuleCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = words};
+    const VkResult result = vkCreateShaderModule(device->handle, &info, NULL, &out->module);
+    free(words);
+    return result == VK_SUCCESS || kernel_fail(params->name, ctx, device, "vkCreateShaderModule", result);
+}
+
 static bool init_handle(struct pipeline *out, struct context *ctx, struct device *device, const struct kernel_params *params) {
-    const VkShaderModuleCreateInfo module = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = params->spirv_size, .pCode = params->spirv};
-    VkResult result = vkCreateShaderModule(device->handle, &module, NULL, &out->module);
-    if (result != VK_SUCCESS) return kernel_fail(params->name, ctx, device, "vkCreateShaderModule", result);
     VkSpecializationMapEntry entries[KERNEL_CONSTANTS];
     for (size_t i = 0; i < params->constant_count; ++i) {
         const size_t offset = i * sizeof *params->constants + offsetof(struct kernel_constant, value);
@@ -95,7 +107,7 @@ static bool init_handle(struct pipeline *out, struct context *ctx, struct device
                   .pSpecializationInfo = &constants},
         .layout = out->layout,
     };
-    result = vkCreateComputePipelines(device->handle, device->pipeline_cache, 1, &info, NULL, &out->handle);
+    const VkResult result = vkCreateComputePipelines(device->handle, device->pipeline_cache, 1, &info, NULL, &out->handle);
     if (result != VK_SUCCESS) return kernel_fail(params->name, ctx, device, "vkCreateComputePipelines", result);
     device_label(device, VK_OBJECT_TYPE_PIPELINE, (uint64_t)out->handle, params->name);
     return true;
@@ -121,7 +133,9 @@ static struct pipeline *make(struct context *ctx, struct device *device, const s
     }
     pipeline->key = key;
     pipeline->key_size = size;
-    if (init_layout(pipeline, ctx, device, params) && init_handle(pipeline, ctx, device, params)) return pipeline;
+    if (init_layout(pipeline, ctx, device, params) && init_module(pipeline, ctx, device, params) &&
+        init_handle(pipeline, ctx, device, params))
+        return pipeline;
     destroy(pipeline, device);
     return NULL;
 }
