@@ -1,5 +1,6 @@
 #include "render/kernels.h"
 
+#include "device/float_controls.h"
 #include "kernels/pending_again.h"
 #include "kernels/render.h"
 #include "kernels/render_fp64.h"
@@ -7,6 +8,7 @@
 #include "kernels/trace_again.h"
 #include "kernels/trace_fp64.h"
 #include "kernels/trace_refine.h"
+#include "render/arithmetic.h"
 
 struct embedded { const char *name; const uint32_t *spirv; size_t size; };
 
@@ -26,10 +28,17 @@ static const uint32_t KNOB_CONSTANTS[] = {
 #undef X
 };
 
-bool tier_available(struct context *ctx, const struct device *device, uint32_t tier) {
-    if (tier != TIER_FP64 || device->has_fp64) return true;
-    return fail(ctx, GN_NO_DEVICE, "accuracy 'fp64' needs a device with doubles (shaderFloat64), and %s has none; 'exact' needs none",
-                device->info.name);
+bool tier_available(struct context *ctx, struct device *device, uint32_t tier) {
+    if (tier == TIER_FP64 && !device->info.has_fp64)
+        return fail(ctx, GN_NO_DEVICE, "accuracy 'fp64' needs a device with doubles (shaderFloat64), and %s has none; 'exact' needs none",
+                    device->info.name);
+    return arithmetic_suffices(ctx, device, tier);
+}
+
+uint32_t tier_float_controls(const struct device *device, uint32_t tier) {
+    const bool special = (tier == TIER_EXACT || tier == TIER_FP64) && !device->software;
+    if (tier == TIER_FAST) return 0;
+    return FLOAT_NEAREST_32 | FLOAT_NEAREST_64 | (special ? FLOAT_SPECIAL_32 | FLOAT_SPECIAL_64 : 0);
 }
 
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,
@@ -47,6 +56,7 @@ bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *
     struct kernel_params params = {
         .name = KERNELS[name].name, .spirv = KERNELS[name].spirv, .spirv_size = KERNELS[name].size,
         .constants = constants, .constant_count = count, .bindings = bindings, .binding_count = binding_count, .push_size = push_size,
+        .float_controls = tier_float_controls(device, specialization->tier),
     };
     return kernel_init(out, ctx, device, &params);
 }

@@ -1,0 +1,4 @@
+// One expression or function in fp32.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "probe.glsl"

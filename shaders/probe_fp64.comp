@@ -1,0 +1,5 @@
+// One expression or function in fp64.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define FP64
+#include "probe.glsl"
