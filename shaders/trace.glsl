@@ -97,7 +97,7 @@ void main() {
     vec3 o = uintBitsToFloat(w0.xyz), d = uintBitsToFloat(w1.xyz);
     float tmin = uintBitsToFloat(w0.w), tmax = uintBitsToFloat(w1.w);
     bool valid = is_valid(o, d, tmin, tmax);
-    bool empty = !(tmin < tmax);
+    bool shot = valid && tmin < tmax;
 
     int steps = int(MAX_STEPS);
     float scale = args.base.w;
@@ -106,11 +106,10 @@ void main() {
     int t_exponent = r.exponent + exponent_of(scale); // t in units of r.d is t in units of d, times this power of two
     r.tmin = times_power_of_two(real(tmin), t_exponent);
     r.tmax = times_power_of_two(real(tmax), t_exponent);
-    search q = traverse(r, ANY_HIT, valid && !empty ? args.root : REF_NONE, steps);
+    search q = traverse(r, ANY_HIT, shot ? args.root : REF_NONE, steps);
     // An origin that lost bits on its way to device coordinates is not the ray that was given.
     bool lossy = loses_bits(real3(o), real3(args.base.xyz), from_base, scale) || is_denormal(o) || is_denormal(d);
-    lossy = lossy && TIER == TIER_EXACT && valid && !empty;
-    bool undecided = lossy || search_undecided(q, ANY_HIT);
+    bool undecided = shot && ((TIER == TIER_EXACT && lossy) || search_undecided(q, ANY_HIT));
     hit h = q.best;
     if (TIER == TIER_EXACT && !ANY_HIT && !undecided && h.object >= 0) undecided = !refine(r, h);
     float t = float(h.object < 0 ? INFINITY : times_power_of_two(h.t, -t_exponent));

@@ -318,6 +318,38 @@ static void traced(struct gn_device *on, struct gn_scene *scene, enum gn_accurac
     if (!gn_trace(on, scene, &params, rays, hits, count, &stats, &error)) fail_msg("%s", error.message);
 }
 
+// Every way to be invalid, and intervals that are empty but valid; each tier says the same of them.
+static void invalid_rays_are_flagged(void **state) {
+    (void)state;
+    static const float odd[] = {NAN, INFINITY, -INFINITY};
+    enum { ODD = 3, EMPTY = 3, COUNT = 8 * ODD + EMPTY + 1 };
+    struct gn_ray rays[COUNT];
+    struct gn_hit hits[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        rays[i] = (struct gn_ray){{0, 0, 0}, 0, {0, 0, -1}, INFINITY};
+        float *const numbers[8] = {rays[i].origin, rays[i].origin + 1, rays[i].origin + 2, &rays[i].tmin,
+                                   rays[i].direction, rays[i].direction + 1, rays[i].direction + 2, &rays[i].tmax};
+        if (i < 8 * ODD) *numbers[i / ODD] = odd[i % ODD];
+        else if (i < 8 * ODD + EMPTY) rays[i].tmin = INFINITY, rays[i].tmax = odd[i % ODD == 0 ? 1 : i % ODD];
+    }
+    rays[COUNT - 1].direction[2] = -0.0f; // not a direction at all
+    struct gn_scene *scene = loaded(scene_path("inside_a_sphere.json"));
+    static const enum gn_accuracy tiers[] = {GN_FAST, GN_ROBUST, GN_EXACT, GN_FP64};
+    for (int t = 0; t < 5; t++) {
+        if (t < 4 && (!device || (tiers[t] == GN_FP64 && !gn_device_info(device)->has_fp64))) continue;
+        for (int any = 0; any < 2; any++) {
+            traced(t < 4 ? device : NULL, scene, t < 4 ? tiers[t] : GN_ROBUST, any, rays, hits, COUNT);
+            for (int i = 0; i < COUNT; i++) {
+                bool bound = i < 8 * ODD && (i / ODD == 3 || i / ODD == 7);
+                bool invalid = i == COUNT - 1 || (i < 8 * ODD && (!bound || i % ODD == 0));
+                if ((hits[i].flags & GN_HIT_INVALID) != invalid) fail_msg("tier %d, ray %d: flags %x", t, i, hits[i].flags);
+                if (invalid || i >= 8 * ODD) assert_int_equal(hits[i].object, -1);
+            }
+        }
+    }
+    gn_scene_destroy(scene);
+}
+
 // On a lattice mesh many rays go through vertices and edges exactly: only exact decisions agree with the reference everywhere.
 static void exact_hits_are_the_reference(void **state) {
     (void)state;
@@ -352,6 +384,7 @@ int main(void) {
         cmocka_unit_test(seed_figures_are_their_formulas), cmocka_unit_test(scenes_agree_with_the_reference),
         cmocka_unit_test(same_seed_same_bits),             cmocka_unit_test(any_scale_is_the_same_picture),
         cmocka_unit_test(more_samples_come_closer),        cmocka_unit_test(exact_hits_are_the_reference),
+        cmocka_unit_test(invalid_rays_are_flagged),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }
