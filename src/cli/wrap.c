@@ -12,6 +12,7 @@ static int columns(const char *text, size_t bytes) {
 
 void print_wrapped(const char *text, int column, int indent) {
     if (column < indent) printf("%*s", indent - column, ""), column = indent;
+    else if (indent > 0) printf("\n%*s", indent, ""), column = indent;
     for (int start = column; *text; text += *text != 0) {
         size_t length = strcspn(text, " \n");
         int width = columns(text, length);
