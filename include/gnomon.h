@@ -270,6 +270,32 @@ struct gn_compare_result {
 bool gn_compare(const char *path_a, const char *path_b, struct gn_compare_result *result, struct gn_picture **heat,
                 struct gn_error *error);
 
+// One thing that the probe measured.
+struct gn_probe_row {
+    char name[40];          // "fp32 quotient"
+    double value;
+    double limit;           // that the tiers in needed_by set it
+    char unit[24];          // of the value: "ulp", "of 65536", …
+    char detail[120];       // what else was seen, for people
+    char meaning[160];      // what it is, and what stands or falls with it
+    uint32_t needed_by;     // tiers that rely on it: 1 << enum gn_accuracy, or-ed
+    uint32_t breaks;        // those of them for which it is too much
+};
+
+struct gn_probe_tier {
+    char name[8];
+    bool available;         // the device has what it needs
+    bool ok;                // available, and the device keeps what it needs
+    char because[240];      // why, or why not
+};
+
+#define GN_PROBE_ROWS 128   // more than there are
+
+// Measures what the device's arithmetic really does: fills rows[0 … *count), at most `capacity`, and what they mean for each tier,
+// tiers[enum gn_accuracy]. True as well when tiers are not ok. Some two seconds on a CPU.
+bool gn_probe(struct gn_device *device, const struct gn_host *host, struct gn_probe_row *rows, uint32_t capacity, uint32_t *count,
+              struct gn_probe_tier tiers[GN_ACCURACY_COUNT], struct gn_error *error);
+
 // ------------------------------------------------------------------------------------------------------------------ cost
 
 // What accuracy costs: settings of one axis at a time (the tier, the offset rule, the samples per pixel, …) and of all together, each with

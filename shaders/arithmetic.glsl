@@ -1,4 +1,5 @@
-// What a device makes of the operations that the exact and fp64 tiers stand on. Included by arithmetic.comp, and with FP64 defined by arithmetic_fp64.comp.
+// What a device makes of the operations that the exact and fp64 tiers stand on. Included by arithmetic.comp, and with FP64 defined by
+// arithmetic_fp64.comp.
 #ifndef ARITHMETIC_GLSL
 #define ARITHMETIC_GLSL
 #include "cases.glsl"
@@ -20,8 +21,8 @@ real sum_error(real a, real b) {
     return error;
 }
 
-// T. J. Dekker, "A floating-point technique for extending the available precision", Numerische Mathematik 18, 1971: no fused multiply, which on some
-// devices is none.
+// T. J. Dekker, "A floating-point technique for extending the available precision", Numerische Mathematik 18, 1971: no fused multiply,
+// which on some devices is none.
 real product_error(real a, real b) {
     precise real a_scaled = SPLITTER * a, b_scaled = SPLITTER * b;
     precise real a_high = a_scaled - (a_scaled - a), b_high = b_scaled - (b_scaled - b);

@@ -1,7 +1,8 @@
-// What the kernels compute that ask a device how it calculates: read by C and by GLSL. Apart from shared.h because no other kernel reads it.
+// What the kernels compute that ask a device how it calculates: read by C and by GLSL. Apart from shared.h because no other kernel has a use
+// for it.
 //
-// All of them work on cases of four numbers a, b, c, d, one invocation a case: binding 0 holds the numbers, binding 1 receives the results, the push
-// constant is the number of cases. A number is its bits: one word of fp32, or two of fp64, the lower one first.
+// All of them work on cases of four numbers a, b, c, d, one invocation a case: binding 0 holds the numbers, binding 1 receives the results,
+// the push constant is the number of cases. A number is its bits: one word of fp32, or two of fp64, the lower one first.
 #ifndef GNOMON_ARITHMETIC_H
 #define GNOMON_ARITHMETIC_H
 
@@ -29,7 +30,8 @@
 #define COMPARED_NOT_LESS 64u           // !(a < b)
 #define COMPARED_NOT_GREATER_EQUAL 128u // !(a >= b)
 
-// probe.comp: the specialization constant 0 says which of these to compute, without `precise`. Two results a case; the second is 0 where one is named.
+// probe.comp: the specialization constant 0 says which of these to compute, without `precise`. Two results a case; the second is 0 where one
+// is named.
 #define FUNCTIONS(X)                             \
     X(0, MULTIPLY_ADD, "a * b + c")              \
     X(1, CANCEL, "(a + b) - b")                  \
@@ -41,7 +43,7 @@
     X(7, INVERSE_ROOT, "inversesqrt(a)")         \
     X(8, LENGTH, "length(a, b, c)")              \
     X(9, NORMALIZE, "normalize(a, b, c).x")      \
-    X(10, NARROW, "float(a)")                    \
+    X(10, NARROW, "float(a), as bits")           \
     X(11, TO_INTEGER, "int(a), uint(a), as bits") \
     X(12, EXP, "exp2(a), exp(a)")                \
     X(13, LOG, "log2(a), log(a)")                \

@@ -1,5 +1,5 @@
-// What a device makes of expressions that it may rearrange, and of GLSL's functions: one of them in each kernel, so that none borrows from another.
-// Included by probe.comp, and with FP64 defined by probe_fp64.comp.
+// What a device makes of expressions that it may rearrange, and of GLSL's functions: one of them in each kernel, so that none borrows from
+// another. Included by probe.comp, and with FP64 defined by probe_fp64.comp.
 #ifndef PROBE_GLSL
 #define PROBE_GLSL
 #include "cases.glsl"
@@ -33,10 +33,10 @@ real2 function_of(real a, real b, real c) {
     case FUNCTION_INVERSE_ROOT: return real2(inversesqrt(a), 0.0);
     case FUNCTION_LENGTH: return real2(length(real3(a, b, c)), 0.0);
     case FUNCTION_NORMALIZE: return real2(normalize(real3(a, b, c)).x, 0.0);
-    case FUNCTION_NARROW: return real2(float(a), 0.0);
     }
 #ifdef FP64
-    return real2(0.0);
+    // As bits: a compiler may take the way there and back for none at all (Mesa 25.0 does).
+    return real2(packDouble2x32(uvec2(floatBitsToUint(float(a)), 0u)), 0.0);
 #else
     return function_of_fp32(a, b);
 #endif

@@ -1,5 +1,5 @@
-// What the exact and fp64 tiers ask of a device before they run: the device at hand keeps it; every way not to is noticed, and the tier says so
-// instead of being wrong.
+// What the exact and fp64 tiers ask of a device before they run: the device at hand keeps it; every way not to is noticed, and the tier
+// says so instead of being wrong.
 #include "fixture.h"
 
 #include <math.h>
@@ -107,7 +107,11 @@ static void pretend(struct cases *cases, enum habit habit) {
 
 static void test_habits(void **state) {
     (void)state;
-    const struct { const char *name; enum habit habit; uint32_t fault; } cases[] = {
+    const struct {
+        const char *name;
+        enum habit habit;
+        uint32_t fault;
+    } cases[] = {
         {"sound", SOUND, 0},
         {"fuses", FUSES, FAULT_CONTRACTS},
         {"truncates", TRUNCATES, FAULT_ROUNDS},

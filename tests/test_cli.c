@@ -176,7 +176,7 @@ static void no_driver_is_no_device(void **state) {
 
 // -------------------------------------------------------------------------------------------------------------------- help
 
-static const char *const commands[] = {"render", "trace", "verify", "plan", "devices", "compare"};
+static const char *const commands[] = {"render", "trace", "verify", "plan", "probe", "devices", "compare"};
 
 static void help_is_complete_and_narrow(void **state) {
     (void)state;

@@ -1,4 +1,5 @@
-// Declarations of floats in SPIR-V: every kernel with every set of them is valid, holds them and nothing else that is new; broken modules do no harm.
+// Declarations of floats in SPIR-V: every kernel with every set of them is valid, holds them and nothing else that is new; broken modules
+// do no harm.
 #include <fcntl.h>
 #include <glob.h>
 #include <setjmp.h>
@@ -87,7 +88,8 @@ static uint32_t declared(const uint32_t *words, size_t size, size_t *extra) {
         const bool mode = code == 16 && (words[i + 2] == 4461 || words[i + 2] == 4462), wide = mode && words[i + 3] == 64;
         const bool capability = code == 17 && (words[i + 1] == 4466 || words[i + 1] == 4467);
         const bool extension = code == 10 && strcmp((const char *)(words + i + 1), "SPV_KHR_float_controls") == 0;
-        if (mode) controls |= words[i + 2] == 4462 ? (wide ? FLOAT_NEAREST_64 : FLOAT_NEAREST_32) : (wide ? FLOAT_SPECIAL_64 : FLOAT_SPECIAL_32);
+        if (mode)
+            controls |= words[i + 2] == 4462 ? (wide ? FLOAT_NEAREST_64 : FLOAT_NEAREST_32) : (wide ? FLOAT_SPECIAL_64 : FLOAT_SPECIAL_32);
         if (mode || capability || extension) *extra += 4 * length;
     }
     return controls;
@@ -176,7 +178,11 @@ static void test_malformed(void **state) {
     assert_true(try_declaring(small_one->words, count) > small_one->size);
 
     const uint32_t header[5] = {0x07230203, 0x00010300, 0, 8, 0}, end = 1u << 16 | 56;
-    const struct { const char *what; uint32_t words[8]; size_t count; } cases[] = {
+    const struct {
+        const char *what;
+        uint32_t words[8];
+        size_t count;
+    } cases[] = {
         {"no entry point", {2u << 16 | 17, 1, end}, 3},
         {"a capability without its number", {1u << 16 | 17, 4u << 16 | 15, 5, 1, 0, end}, 6},
         {"an entry point without its name", {2u << 16 | 17, 1, 3u << 16 | 15, 5, 1, end}, 6},
@@ -213,7 +219,11 @@ static void test_damaged(void **state) {
 static void test_accepted(void **state) {
     (void)state;
     enum { NONE = VK_SHADER_FLOAT_CONTROLS_INDEPENDENCE_NONE, ONLY_32 = VK_SHADER_FLOAT_CONTROLS_INDEPENDENCE_32_BIT_ONLY };
-    const struct { int independence; bool nearest32, nearest64, special32, special64; uint32_t accepted; } cases[] = {
+    const struct {
+        int independence;
+        bool nearest32, nearest64, special32, special64;
+        uint32_t accepted;
+    } cases[] = {
         {ONLY_32, true, true, true, true, FLOAT_ALL},
         {ONLY_32, true, false, true, false, FLOAT_NEAREST_32 | FLOAT_SPECIAL_32},
         {ONLY_32, false, true, false, true, FLOAT_NEAREST_64 | FLOAT_SPECIAL_64},
@@ -238,11 +248,8 @@ static void test_accepted(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_declares),
-        cmocka_unit_test(test_valid),
-        cmocka_unit_test(test_malformed),
-        cmocka_unit_test(test_damaged),
-        cmocka_unit_test(test_accepted),
+        cmocka_unit_test(test_declares), cmocka_unit_test(test_valid),    cmocka_unit_test(test_malformed),
+        cmocka_unit_test(test_damaged),  cmocka_unit_test(test_accepted),
     };
     return cmocka_run_group_tests(tests, read_modules, free_modules);
 }

@@ -47,7 +47,8 @@ double run_ms(const struct run *run) { return clock_ms_since(run->started); }
 
 struct gn_device *run_device(struct run *run) {
     cache_dir_choose();
-    const struct gn_device_params params = {.select = run->settings.device, .validate = run->settings.validate, .host = &run->host};
+    const struct gn_device_params params = {
+        .select = run->settings.device, .validate = run->settings.validate, .hide_fp64 = run->settings.hide_fp64, .host = &run->host};
     return gn_device_create(&params, &run->error);
 }
 

@@ -70,6 +70,21 @@ static const struct command commands[] = {
                     "  gnomon plan scene.json --spp 16 --disable shadows",
     },
     {
+        .name = "probe",
+        .bit = COMMAND_PROBE,
+        .run = command_probe,
+        .positionals = 0,
+        .names = "",
+        .arguments = "",
+        .summary = "what this device's arithmetic really does",
+        .about = "Calculates with many numbers on the device, easy and nasty ones, and compares with the right results: contraction, "
+                 "rounding, division, roots, functions, comparisons, NaN, infinities, denormals, in fp32 and, where there are any, doubles. "
+                 "Then says of each accuracy whether the device keeps what it needs. Exit code 1 when an accuracy that the device has "
+                 "would be wrong on it; exact and fp64 do not run there.",
+        .examples = "  gnomon probe\n"
+                    "  gnomon probe --device gpu --json",
+    },
+    {
         .name = "devices",
         .bit = COMMAND_DEVICES,
         .run = command_devices,
@@ -115,7 +130,7 @@ static const struct command commands[] = {
     },
 };
 
-static const char *const planned[] = {"stress", "bench", "probe"};
+static const char *const planned[] = {"stress", "bench"};
 
 #define COMMAND_COUNT (sizeof commands / sizeof *commands)
 
@@ -148,7 +163,7 @@ void help_overview(void) {
         print_wrapped(commands[i].summary, column, 41);
     }
     printf("\ngnomon COMMAND --help says more about one of them.\n"
-           "Planned, not in this version: stress, bench, probe.\n\n"
+           "Planned, not in this version: stress, bench.\n\n"
            "Try:\n"
            "  gnomon render scenes/demo.json -o demo.png\n"
            "  gnomon devices\n\n"

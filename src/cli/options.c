@@ -85,6 +85,7 @@ static const struct option options[] = {
      "auto, bar, plain or none [auto: a bar on a terminal, a line now and then elsewhere]"},
     {"threads", 0, "N", WHOLE, AT(threads), COMMAND_ALL, 1, 256, NULL, "CPU threads of gnomon's own work [one for each core]"},
     {"validate", 0, NULL, FLAG, AT(validate), COMMAND_ALL, 0, 0, NULL, "turn the Vulkan validation layer on; its messages are errors"},
+    {"hide-fp64", 0, NULL, FLAG, AT(hide_fp64), RAYS | COMMAND_COST | COMMAND_PROBE, 0, 0, NULL, "for tests: do as if the device had no doubles"},
     {"quiet", 'q', NULL, FLAG, AT(quiet), COMMAND_ALL, 0, 0, NULL, "say nothing but errors"},
     {"verbose", 'v', NULL, COUNT, AT(verbose), COMMAND_ALL, 0, 0, NULL, "say more; twice: everything"},
     {"help", 'h', NULL, FLAG, AT(help), COMMAND_ALL, 0, 0, NULL, "this text"},

@@ -15,7 +15,8 @@ enum {
     COMMAND_DEVICES = 1 << 4,
     COMMAND_COMPARE = 1 << 5,
     COMMAND_COST = 1 << 6,
-    COMMAND_ALL = (1 << 7) - 1,
+    COMMAND_PROBE = 1 << 7,
+    COMMAND_ALL = (1 << 8) - 1,
 };
 
 #define MOST_POSITIONALS 2
@@ -30,7 +31,7 @@ struct size {
 struct settings {
     const char *positionals[MOST_POSITIONALS];
     int positional_count;
-    bool help, json, quiet, validate, reference, no_prune, stats, any;
+    bool help, json, quiet, validate, hide_fp64, reference, no_prune, stats, any;
     uint32_t verbose; // how often -v was given
     int progress;     // enum progress_mode
     uint32_t threads;

@@ -1,5 +1,5 @@
-// The physical layout of a module (SPIR-V specification, 2.3 and 2.4): header, capabilities, extensions, …, entry points, execution modes, …
-// A declaration is a capability, an extension and an execution mode: two places, found in one pass and filled in a second.
+// The physical layout of a module (SPIR-V specification, 2.3 and 2.4): header, capabilities, extensions, …, entry points, execution modes,
+// … A declaration is a capability, an extension and an execution mode: two places, found in one pass and filled in a second.
 #include "device/float_controls.h"
 
 #include <stdbool.h>

@@ -60,7 +60,8 @@ struct embedded {
     size_t size;
 };
 
-#define EMBEDDED(kernel) {#kernel, kernel_##kernel, sizeof kernel_##kernel}
+#define EMBEDDED(kernel)                                                                                                                   \
+    { #kernel, kernel_##kernel, sizeof kernel_##kernel }
 static const struct embedded ARITHMETIC_KERNELS[] = {EMBEDDED(arithmetic), EMBEDDED(arithmetic_fp64)};
 static const struct embedded FUNCTION_KERNELS[] = {EMBEDDED(probe), EMBEDDED(probe_fp64)};
 
@@ -80,7 +81,8 @@ static bool fill_given(void *data, void *to, uint64_t offset, uint64_t size) {
 static bool dispatch(struct cases *cases, struct context *ctx, struct device *device, struct kernel_params *params) {
     const size_t word = word_size(cases), given_size = cases->count * GIVEN * word, result_size = cases->count * cases->result_count * word;
     const struct buffer_params given_params = {.name = "cases", .kind = BUFFER_STORAGE, .size = given_size, .host_writes = true};
-    const struct buffer_params result_params = {.name = "results of cases", .kind = BUFFER_STORAGE, .size = result_size, .host_reads = true};
+    const struct buffer_params result_params = {
+        .name = "results of cases", .kind = BUFFER_STORAGE, .size = result_size, .host_reads = true};
     struct buffer given = {0}, results = {0};
     struct kernel kernel = {0};
     const struct kernel_binding bindings[] = {{.binding = 0, .buffer = &given}, {.binding = 1, .buffer = &results}};
@@ -99,9 +101,10 @@ static bool dispatch(struct cases *cases, struct context *ctx, struct device *de
 
 bool cases_run_arithmetic(struct cases *cases, struct context *ctx, struct device *device) {
     const struct embedded *embedded = &ARITHMETIC_KERNELS[cases->fp64];
-    struct kernel_params params = {
-        .name = embedded->name, .spirv = embedded->spirv, .spirv_size = embedded->size,
-        .float_controls = tier_float_controls(device, TIER_EXACT)};
+    struct kernel_params params = {.name = embedded->name,
+                                   .spirv = embedded->spirv,
+                                   .spirv_size = embedded->size,
+                                   .float_controls = tier_float_controls(device, TIER_EXACT)};
     cases->result_count = ARITHMETIC_COUNT;
     return dispatch(cases, ctx, device, &params);
 }
@@ -109,8 +112,8 @@ bool cases_run_arithmetic(struct cases *cases, struct context *ctx, struct devic
 bool cases_run_function(struct cases *cases, struct context *ctx, struct device *device, uint32_t function) {
     const struct embedded *embedded = &FUNCTION_KERNELS[cases->fp64];
     const struct kernel_constant constant = {.id = 0, .value = function};
-    struct kernel_params params = {.name = embedded->name, .spirv = embedded->spirv, .spirv_size = embedded->size, .constants = &constant,
-                                   .constant_count = 1};
+    struct kernel_params params = {
+        .name = embedded->name, .spirv = embedded->spirv, .spirv_size = embedded->size, .constants = &constant, .constant_count = 1};
     cases->result_count = FUNCTION_RESULTS;
     return dispatch(cases, ctx, device, &params);
 }

@@ -6,11 +6,11 @@
 #include "shaders/arithmetic.h"
 
 struct cases {
-    bool fp64;              // the numbers' type on the device
+    bool fp64; // the numbers' type on the device
     uint32_t capacity, count;
-    uint32_t result_count;  // of a case, as the last run left them
-    double (*given)[4];     // a, b, c, d
-    void *results;          // words of the device: uint32_t, or uint64_t for fp64
+    uint32_t result_count; // of a case, as the last run left them
+    double (*given)[4];    // a, b, c, d
+    void *results;         // words of the device: uint32_t, or uint64_t for fp64
 };
 
 bool cases_init(struct cases *out, struct context *ctx, bool fp64, uint32_t capacity);
@@ -19,8 +19,8 @@ void cases_finish(struct cases *cases);
 // Appends one; the numbers are rounded to fp32 where that is the type. Does nothing when the capacity is reached.
 void cases_add(struct cases *cases, double a, double b, double c, double d);
 
-// Runs arithmetic.comp (with what the kernels of the exact tier declare) or the FUNCTION_* of probe.comp over them. Needs a device with doubles for
-// fp64.
+// Runs arithmetic.comp (with what the kernels of the exact tier declare) or the FUNCTION_* of probe.comp over them. Needs a device with
+// doubles for fp64.
 bool cases_run_arithmetic(struct cases *cases, struct context *ctx, struct device *device);
 bool cases_run_function(struct cases *cases, struct context *ctx, struct device *device, uint32_t function);
 

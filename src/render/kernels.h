@@ -28,9 +28,10 @@ struct kernel_specialization {
 // Whether the device has what a tier needs, and calculates as it assumes; else GN_NO_DEVICE, with what is missing or wrong.
 bool tier_available(struct context *ctx, struct device *device, uint32_t tier);
 
-// What the kernels of a tier declare of floats (device/float_controls.h): rounding, from robust on; NaN and infinities, where bounds of errors pass
-// them on. That not on software devices: Mesa 25.0's runs 12 % more instructions for it in exact and 25 % more in fp64, for the same hits, and how it
-// compares is seen by the check before these tiers and by the tests. (Rounding changes nothing there, and neither does with Mesa 22.3.)
+// What the kernels of a tier declare of floats (device/float_controls.h): rounding, from robust on; NaN and infinities, where bounds of
+// errors pass them on. The latter not on software devices: Mesa 25.0's runs 12 % more instructions for it in exact and 25 % more in fp64, for
+// the same hits, and how it compares is seen by the check before these tiers and by the tests. (Rounding costs nothing there, and neither
+// costs with Mesa 22.3.)
 uint32_t tier_float_controls(const struct device *device, uint32_t tier);
 
 bool render_kernel_init(struct kernel *out, struct context *ctx, struct device *device, enum kernel_name name,
