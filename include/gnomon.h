@@ -128,6 +128,9 @@ void gn_scene_info(const struct gn_scene *scene, struct gn_scene_info *info);
 // How decisions are made. The default is the watertight tier.
 enum gn_accuracy { GN_ROBUST = 0, GN_FAST, GN_EXACT, GN_FP64, GN_ACCURACY_COUNT };
 
+// "robust", "fast", …; NULL where there is no such accuracy.
+const char *gn_accuracy_name(enum gn_accuracy accuracy);
+
 // Extra layers of a picture, or-ed together.
 enum gn_aov {
     GN_AOV_DEPTH = 1,      // distance along the ray from the camera, scene units; +inf where nothing is hit; 1 channel
@@ -329,7 +332,7 @@ struct gn_cost_row {
 
 // Something that was not measured, and why; `setting` is "" for a whole axis.
 struct gn_cost_skipped {
-    char axis[16], setting[48], because[96];
+    char axis[16], setting[48], because[256];
 };
 
 // Measures. NULL and *error on failure.
@@ -351,6 +354,43 @@ void gn_cost_summary(const struct gn_cost *cost, struct gn_cost_summary *summary
 
 // Writes a report: one HTML file with charts, pictures and their error maps, for any browser, without a network.
 bool gn_cost_save(const struct gn_cost *cost, const char *path, struct gn_error *error);
+
+// ------------------------------------------------------------------------------------------------------------------ pick
+
+// Which accuracy and how many samples per pixel meet an error at the least time, or have the least error within a time: found on a sample
+// of the picture's pixels, rendered by the device and by the reference.
+//
+// The error is the RMSE of linear values over pixels and channels. Where the samples per pixel are up to gnomon, it is against very many
+// samples per pixel, so that the error of sampling is in it; where they are given, against the reference with the same samples.
+struct gn_pick_params {
+    struct gn_render_params render; // the picture; where spp is not 0 it is given
+    bool keep_accuracy;             // its accuracy is, too
+    double max_error;               // what is asked for [nothing]
+    double max_seconds;             // from the call on, for picking, rendering and checking [as long as it takes]
+};
+
+struct gn_pick_candidate {
+    enum gn_accuracy accuracy;
+    uint32_t spp;
+    double error, seconds;          // expected
+    bool measured;                  // the error was, on the sample; else it is extrapolated from fewer samples per pixel
+};
+
+struct gn_pick {
+    struct gn_pick_candidate picked, candidates[96];
+    uint32_t count;                 // of the candidates
+    bool met;                       // what was asked for; else what was picked comes nearest
+    char because[320];              // why it was picked, for people
+    double reference_seconds;       // that the reference takes for a sample of a pixel
+};
+
+// Picks. Exactly one of max_error and max_seconds may be 0. That nothing meets what is asked for is no failure: see `met`.
+bool gn_pick(struct gn_device *device, struct gn_scene *scene, const struct gn_pick_params *params, struct gn_pick *pick, struct gn_error *error);
+
+// The error of the picture that gn_render made with what was picked, by the same measure, on other pixels than those that were looked at
+// when picking: about as many as the reference renders in `seconds`; *pixels says how many.
+bool gn_pick_check(struct gn_scene *scene, const struct gn_pick_params *params, const struct gn_pick *pick, const struct gn_picture *picture,
+                   double seconds, double *measured_error, uint64_t *pixels, struct gn_error *error);
 
 #ifdef __GNUC__
 #pragma GCC visibility pop

@@ -24,6 +24,10 @@
 static const char *const accuracy_names[GN_ACCURACY_COUNT] = {
     [GN_ROBUST] = "robust", [GN_FAST] = "fast", [GN_EXACT] = "exact", [GN_FP64] = "fp64"};
 
+const char *gn_accuracy_name(enum gn_accuracy accuracy) {
+    return accuracy >= 0 && accuracy < GN_ACCURACY_COUNT ? accuracy_names[accuracy] : NULL;
+}
+
 static const struct {
     uint32_t tier;
     const char *name;

@@ -52,6 +52,10 @@ struct gn_device *run_device(struct run *run) {
     return gn_device_create(&params, &run->error);
 }
 
+enum gn_accuracy run_accuracy(const struct run *run) {
+    return run->settings.accuracy < 0 ? GN_ROBUST : (enum gn_accuracy)run->settings.accuracy;
+}
+
 struct gn_render_params run_render_params(struct run *run) {
     const struct settings *settings = &run->settings;
     return (struct gn_render_params){
@@ -59,7 +63,7 @@ struct gn_render_params run_render_params(struct run *run) {
         .height = settings->size.height,
         .spp = settings->spp,
         .seed = settings->seed,
-        .accuracy = (enum gn_accuracy)settings->accuracy,
+        .accuracy = run_accuracy(run),
         .aovs = settings->aovs,
         .disable = settings->disable,
         .no_prune = settings->no_prune,

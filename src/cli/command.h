@@ -60,6 +60,9 @@ bool run_result(struct run *run, json_t *result);
 // Opens the device that the settings ask for; before that, gives the driver its cache folder.
 struct gn_device *run_device(struct run *run);
 
+// The accuracy that the settings ask for, or the default.
+enum gn_accuracy run_accuracy(const struct run *run);
+
 // What the settings say of rendering.
 struct gn_render_params run_render_params(struct run *run);
 

@@ -21,6 +21,9 @@ static const struct command commands[] = {
                     "  gnomon render bunny.obj -o bunny.png --size 1024x1024 --spp 16\n"
                     "  gnomon render scene.json -o scene.exr --aov depth,normal,id\n"
                     "  gnomon render scene.json -o truth.pfm --reference\n"
+                    "  gnomon render scene.json -o scene.png --max-error 0.005\n"
+                    "  gnomon render scene.json -o scene.png --max-time 10\n"
+                    "  gnomon render scene.json -o scene.png --aov error,ulp,undecided\n"
                     "  gnomon render scene.json -o flat.png --disable shadows --json",
     },
     {

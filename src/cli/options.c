@@ -56,6 +56,10 @@ static const struct option options[] = {
     {"seed", 0, "N", WHOLE, AT(seed), PICTURE | COMMAND_COST, 0, MOST_WHOLE, NULL, "of the random numbers, 0 to 4294967295 [0]"},
     {"accuracy", 0, "TIER", CHOICE, AT(accuracy), RAYS, 0, 0, "robust|fast|exact|fp64",
      "how hits are decided: fast, robust, exact or fp64 [robust]"},
+    {"max-error", 0, "E", REAL, AT(max_error), COMMAND_RENDER, 1e-12, 1e12, NULL,
+     "pick the fastest accuracy and samples per pixel with an RMSE, in linear light, of at most E; --accuracy or --spp keep theirs"},
+    {"max-time", 0, "S", REAL, AT(max_time), COMMAND_RENDER, 0.001, 1e9, NULL,
+     "pick those with the least error that render within S seconds, all told"},
     {"reference", 0, NULL, FLAG, AT(reference), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL,
      "on the CPU in fp64 with exact decisions instead of on a device"},
     {"disable", 0, "EFFECT", LIST, AT(disable), PICTURE | COMMAND_PLAN, 0, 0, NULL,
@@ -310,7 +314,7 @@ static bool asks_for_help(int argc, char **argv) {
 
 bool options_parse(struct settings *out, struct gn_error *error, int argc, char **argv, uint32_t command, int positionals,
                    const char *names) {
-    *out = (struct settings){.max_abs = -1, .max_flip = -1};
+    *out = (struct settings){.accuracy = -1, .max_abs = -1, .max_flip = -1};
     struct parser parser = {.out = out, .error = error, .argc = argc, .argv = argv, .command = command};
     if ((out->help = asks_for_help(argc, argv))) return true;
     bool only_positionals = false;

@@ -38,10 +38,10 @@ struct settings {
     const char *device, *output, *rays;
     struct size size;
     uint32_t spp, seed, repeat, tile_pixels, rounds;
-    int accuracy;       // enum gn_accuracy
+    int accuracy;       // enum gn_accuracy; negative: not given
     uint32_t aovs;      // enum gn_aov, or-ed
     char disable[1024]; // comma-separated
-    double tolerance, seconds;
+    double tolerance, seconds, max_error, max_time;
     double max_abs, max_flip; // negative: not given
 };
 

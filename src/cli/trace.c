@@ -71,7 +71,7 @@ bool command_trace(struct run *run) {
     struct batch batch;
     struct gn_trace_stats stats;
     const struct gn_trace_params params = {
-        .accuracy = (enum gn_accuracy)settings->accuracy, .any = settings->any, .repeat = settings->repeat, .host = &run->host};
+        .accuracy = run_accuracy(run), .any = settings->any, .repeat = settings->repeat, .host = &run->host};
     bool done = read_batch(&batch, run) && (scene = gn_scene_load(settings->positionals[0], &run->host, &run->error)) &&
                 (settings->reference || (device = run_device(run))) &&
                 gn_trace(device, scene, &params, batch.rays, batch.hits, batch.count, &stats, &run->error) && write_batch(&batch, run) &&

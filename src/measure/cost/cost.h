@@ -58,7 +58,7 @@ struct cost_row {
 
 // An axis that is not measured, or a position of it.
 struct cost_skipped {
-    char axis[16], setting[48], because[96];
+    char axis[16], setting[48], because[256];
 };
 
 struct cost_target {

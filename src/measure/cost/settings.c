@@ -63,25 +63,31 @@ static void skip(struct cost *cost, const char *axis, const char *setting, const
     struct cost_skipped *skipped = &cost->skipped[cost->skipped_count++];
     snprintf(skipped->axis, sizeof skipped->axis, "%s", axis);
     snprintf(skipped->setting, sizeof skipped->setting, "%s", setting);
-    snprintf(skipped->because, sizeof skipped->because, "%s", because);
+    snprintf(skipped->because, sizeof skipped->because, "%.*s", (int)sizeof skipped->because - 1, because);
 }
 
 static struct cost_config centres(uint32_t tier) {
     return (struct cost_config){.tier = tier, .spp = 1, .target = COST_CENTRES, .same_samples = true};
 }
 
+// Whether the device has a tier; else *why says what is missing.
+static bool has_tier(struct gn_error *why, const struct cost_bench *bench, uint32_t tier) {
+    struct context ctx = context_make(NULL, why);
+    return tier_available(&ctx, bench->device, tier);
+}
+
 static bool is_there(const struct cost_bench *bench, uint32_t tier) {
     struct gn_error unused;
-    struct context ctx = context_make(NULL, &unused);
-    return tier_available(&ctx, bench->device, tier);
+    return has_tier(&unused, bench, tier);
 }
 
 static void list_tiers(struct cost *cost, const struct cost_bench *bench) {
     for (uint32_t tier = 0; tier < TIER_COUNT; tier++) {
-        if (is_there(bench, tier))
+        struct gn_error why;
+        if (has_tier(&why, bench, tier))
             add(cost, "tier", TIER_NAMES[tier], COST_FRONT_ARITHMETIC, tier == TIER_ROBUST, centres(tier));
         else
-            skip(cost, "tier", TIER_NAMES[tier], "this device does not have what it takes");
+            skip(cost, "tier", TIER_NAMES[tier], why.message);
     }
 }
 

@@ -3,9 +3,8 @@
 // How dense is found by trial: a coarse lattice is rendered by the reference, and by the robust tier once more after it has been compiled.
 #include <math.h>
 
-#include "base/clock.h"
 #include "measure/cost/cost.h"
-#include "reference/reference.h"
+#include "measure/sample.h"
 #include "render/render.h"
 
 #define TRIAL_PIXELS 1024
@@ -16,48 +15,38 @@ static const double LEAST_PIXELS[COST_TARGETS] = {[COST_CENTRES] = 16384, [COST_
 
 #define TIER_WEIGHT 1.6 // the mean run's time in units of the robust tier's
 
-// The lattice with about `pixels` pixels of the picture, at most all of them.
-static struct lattice lattice_of(const struct cost_params *params, double pixels) {
-    double all = (double)params->width * params->height;
-    uint32_t stride = pixels < all ? (uint32_t)fmin(ceil(sqrt(all / fmax(pixels, 1))), 65535) : 1;
-    uint32_t shorter = params->width < params->height ? params->width : params->height;
-    if (stride > shorter) stride = shorter;
-    return (struct lattice){.stride = stride, .x = stride / 2, .y = stride / 2};
+static struct sample sample_of(const struct cost *cost, const struct cost_bench *bench, const struct lattice *lattice) {
+    return (struct sample){.scene = bench->scene,
+                           .bvh = bench->bvh,
+                           .width = cost->params.width,
+                           .height = cost->params.height,
+                           .effects = cost->params.effects,
+                           .lattice = *lattice};
 }
 
-static double pixels_of(const struct cost_params *params, const struct lattice *lattice) {
-    return (double)lattice_side(params->width, lattice->x, lattice->stride) * lattice_side(params->height, lattice->y, lattice->stride);
-}
-
-static struct reference_params reference_of(const struct cost *cost, const struct lattice *lattice, uint32_t spp, uint32_t seed) {
-    return (struct reference_params){.width = cost->params.width,
-                                     .height = cost->params.height,
-                                     .spp = spp,
-                                     .seed = seed,
-                                     .effects = cost->params.effects,
-                                     .lattice = *lattice};
-}
-
-static bool try_reference(struct cost *cost, const struct cost_bench *bench, const struct lattice *lattice) {
-    struct reference_film film;
-    const struct reference_params params = reference_of(cost, lattice, 1, 0);
-    double start = clock_seconds();
-    if (!reference_render(&film, bench->ctx, bench->scene, bench->bvh, &params)) return false;
-    cost->reference_speed = (clock_seconds() - start) / pixels_of(&cost->params, lattice);
-    reference_film_finish(&film);
+static bool try_reference(struct cost *cost, const struct cost_bench *bench) {
+    const struct lattice lattice = sample_lattice(cost->params.width, cost->params.height, TRIAL_PIXELS);
+    const struct sample sample = sample_of(cost, bench, &lattice);
+    struct image unused;
+    double seconds;
+    if (!sample_reference(&unused, &seconds, bench->ctx, &sample, 1, 0)) return false;
+    cost->reference_speed = seconds / sample_pixels(&sample);
+    image_finish(&unused);
     return true;
 }
 
-static bool try_device(struct cost *cost, const struct cost_bench *bench, const struct lattice *lattice) {
-    const struct render_params params = {.width = cost->params.width,
-                                         .height = cost->params.height,
+static bool try_device(struct cost *cost, const struct cost_bench *bench) {
+    const struct lattice lattice = sample_lattice(cost->params.width, cost->params.height, DEVICE_TRIAL_PIXELS);
+    const struct sample sample = sample_of(cost, bench, &lattice);
+    const struct render_params params = {.width = sample.width,
+                                         .height = sample.height,
                                          .spp = 1,
                                          .tier = TIER_ROBUST,
-                                         .effects = cost->params.effects,
-                                         .lattice = *lattice};
+                                         .effects = sample.effects,
+                                         .lattice = lattice};
     struct render_film film;
     if (!render_picture(&film, bench->ctx, bench->device, bench->scene, bench->bvh, &params)) return false;
-    cost->device_speed = 1e-3 * film.trace_ms / pixels_of(&cost->params, lattice);
+    cost->device_speed = 1e-3 * film.trace_ms / sample_pixels(&sample);
     render_film_finish(&film);
     return true;
 }
@@ -75,25 +64,21 @@ static void aim(struct cost *cost, enum cost_target_name name, double reference_
     double seconds = cost->params.seconds, rounds = cost->params.rounds + 1;
     double by_reference = reference_share * seconds / (target->spp * cost->reference_speed);
     double by_device = device_share * seconds / (rounds * samples_of_round(cost, name) * cost->device_speed);
-    target->lattice = lattice_of(&cost->params, fmax(fmin(by_reference, by_device), LEAST_PIXELS[name]));
+    target->lattice = sample_lattice(cost->params.width, cost->params.height, fmax(fmin(by_reference, by_device), LEAST_PIXELS[name]));
 }
 
 static bool render_target(struct cost_target *target, const struct cost *cost, const struct cost_bench *bench) {
-    struct reference_film film;
-    const struct reference_params params = reference_of(cost, &target->lattice, target->spp, target->seed);
-    double start = clock_seconds();
-    if (!reference_render(&film, bench->ctx, bench->scene, bench->bvh, &params)) return false;
-    target->ms = clock_ms_since(start);
-    target->color = film.color;
+    const struct sample sample = sample_of(cost, bench, &target->lattice);
+    double seconds;
+    if (!sample_reference(&target->color, &seconds, bench->ctx, &sample, target->spp, target->seed)) return false;
+    target->ms = 1e3 * seconds;
     return true;
 }
 
 bool cost_try(struct cost *cost, const struct cost_bench *bench) {
-    const struct lattice reference_trial = lattice_of(&cost->params, TRIAL_PIXELS);
-    const struct lattice trial = lattice_of(&cost->params, DEVICE_TRIAL_PIXELS);
-    if (!try_reference(cost, bench, &reference_trial)) return false;
+    if (!try_reference(cost, bench)) return false;
     for (int turn = 0; turn < 2; turn++) // the first one compiles
-        if (!try_device(cost, bench, &trial)) return false;
+        if (!try_device(cost, bench)) return false;
     double samples = COST_SHARE_SAMPLES * cost->params.seconds / cost->reference_speed / ENOUGH_PIXELS;
     cost->rungs = 2;
     while (cost->rungs < COST_LADDER && COST_REFERENCE_SAMPLES * cost_rung(cost->rungs) <= samples) cost->rungs++;
