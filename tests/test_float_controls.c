@@ -57,7 +57,7 @@ static glob_t paths;
 static int read_modules(void **state) {
     (void)state;
     mkdir(TEST_OUTPUT_DIR, 0777);
-    assert_int_equal(glob(TEST_OUTPUT_DIR "/../../kernels/*.spv", 0, NULL, &paths), 0);
+    assert_int_equal(glob(TEST_BUILD_DIR "/kernels/*.spv", 0, NULL, &paths), 0);
     for (size_t i = 0; i < paths.gl_pathc; ++i) read_module(paths.gl_pathv[i]);
     assert_non_null(small_one);
     return 0;

@@ -32,16 +32,12 @@ double probe_error_order(const struct cases *cases, uint32_t i, struct probe_res
 }
 
 double probe_error_two_sum(const struct cases *cases, uint32_t i, struct probe_result result) {
-    (void)result;
-    const double a = cases->given[i][0], b = cases->given[i][1], sum = a + b, there = sum - a;
-    const double rest = (a - (sum - there)) + (b - there), error = (sum - cases_result(cases, i, RESULT_SUM)) + rest;
-    return cases_result(cases, i, RESULT_SUM_ERROR) != error;
+    return cases_result(cases, i, result.which) != arithmetic_sum_error(cases, i);
 }
 
 double probe_error_two_product(const struct cases *cases, uint32_t i, struct probe_result result) {
-    (void)result;
     const double error = fma(cases->given[i][0], cases->given[i][1], -cases_result(cases, i, RESULT_PRODUCT));
-    return cases_result(cases, i, RESULT_PRODUCT_ERROR) != error;
+    return cases_result(cases, i, result.which) != error;
 }
 
 double probe_error_compared(const struct cases *cases, uint32_t i, struct probe_result result) {

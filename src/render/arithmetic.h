@@ -41,6 +41,9 @@ double arithmetic_error(const struct cases *cases, uint32_t i, uint32_t result);
 // The same result rounded to nearest, ties to even.
 double arithmetic_rounded(const struct cases *cases, uint32_t i, uint32_t result);
 
+// What RESULT_SUM of case i, rounded in some way, is off by: exact.
+double arithmetic_sum_error(const struct cases *cases, uint32_t i);
+
 // Numbers of the type: the unit in the last place of x, and x rounded to the type.
 double ulp_of(bool fp64, double x);
 double round_to(bool fp64, double x);
