@@ -56,7 +56,7 @@ real3 light_reflect(surface s, phong_material m, real3 v, uint number, out real3
     real3 way = position - s.p;
     real3 l = normalize_any(way);
     real distance = dot(way, l) * args.corner.w;
-    real3 light = real3(uintBitsToFloat(w1.xyz)) * light_falloff(uintBitsToFloat(w0.w), distance);
+    real3 light = light_arriving(real3(uintBitsToFloat(w1.xyz)), uintBitsToFloat(w0.w), distance);
     return light * phong_reflect(m, s.n, l, v, HAS_DIFFUSE, HAS_SPECULAR);
 }
 

@@ -107,7 +107,7 @@ void test_sphere(uint number, ray r, inout search q) {
 // by itself (lavapipe before Mesa 23.1 does, after 65535 iterations of all lanes together): each loop's own condition is checked behind it.
 search traverse(ray r, bool any, uint root, inout int steps) {
     search q = search_nothing();
-    bool too_far = TIER == TIER_EXACT && !(largest(r.o) <= FAR);
+    bool too_far = TIER == TIER_EXACT && root != REF_NONE && !(largest(r.o) <= FAR);
     if (too_far) q.maybe = -REAL_MAX;
     slabs slab = slabs_make(r.o, r.d);
     shear s;

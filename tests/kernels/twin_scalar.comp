@@ -1,4 +1,4 @@
-// In: x, y. Out: power(x, y), light_falloff(x, y).
+// In: x, y. Out: power(x, y), what arrives of a light of intensity 1.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "phong.glsl"
@@ -8,5 +8,5 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= count) return;
     result[2u * i] = power(given[2u * i], given[2u * i + 1u]);
-    result[2u * i + 1u] = light_falloff(given[2u * i], given[2u * i + 1u]);
+    result[2u * i + 1u] = light_arriving(vec3(1.0), given[2u * i], given[2u * i + 1u]).x;
 }
