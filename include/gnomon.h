@@ -392,6 +392,41 @@ bool gn_pick(struct gn_device *device, struct gn_scene *scene, const struct gn_p
 bool gn_pick_check(struct gn_scene *scene, const struct gn_pick_params *params, const struct gn_pick *pick, const struct gn_picture *picture,
                    double seconds, double *measured_error, uint64_t *pixels, struct gn_error *error);
 
+// ---------------------------------------------------------------------------------------------------------------- stress
+
+// The numerically hard cases, each accuracy tier against exact arithmetic.
+struct gn_stress; // what came of them
+
+struct gn_stress_params {
+    const char *cases;      // shell pattern of their numbers, e.g. "T0*" [all]
+    uint32_t accuracies;    // bits 1 << enum gn_accuracy [all]
+    uint32_t rays;          // what each case shoots at each tier, about [10000]
+    uint32_t seed;          // of the random numbers
+    const struct gn_host *host;
+};
+
+// A case at a tier.
+struct gn_stress_result {
+    const char *id, *text, *accuracy;
+    bool waits;             // it was not run: for want of an effect, or of something that the device lacks; the note says what
+    bool pass;              // no worse than is known of the tier
+    uint64_t rays;          // or whatever the case counts: numbers, boxes, samples
+    uint64_t wrong;         // of them: a hit, its object and primitive, or a number is not the exact answer's
+    uint64_t allowed;       // that may be wrong; 0 for the exact tier
+    uint64_t leaks;         // of the wrong ones: rays that went through a closed surface
+    double ms;              // of shooting; 0 where nothing was measured
+    char note[240];
+};
+
+// Runs them. NULL and *error when that was not possible: GN_USAGE for a pattern that no case matches, a fault of the device, cancelled. What a
+// tier gets wrong is no failure.
+struct gn_stress *gn_stress_run(struct gn_device *device, const struct gn_stress_params *params, struct gn_error *error);
+void gn_stress_destroy(struct gn_stress *stress);
+
+// The results, valid until they are destroyed: case by case, `tiers` for each. gn_stress_passed: whether all of them do.
+const struct gn_stress_result *gn_stress_results(const struct gn_stress *stress, uint32_t *count, uint32_t *tiers);
+bool gn_stress_passed(const struct gn_stress *stress);
+
 #ifdef __GNUC__
 #pragma GCC visibility pop
 #endif

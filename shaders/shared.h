@@ -129,6 +129,20 @@
 #define HIT_UNDECIDED 2u
 #define HIT_OPEN 0x80000000u        // not decided yet: a later stage's; never leaves the program
 
+// Stress kernels: functions of stress_numbers.comp, and numbers in and out of an invocation.
+#define STRESS_POWER 0u             // x, y
+#define STRESS_LIGHT 1u             // intensity.rgb, falloff, distance
+#define STRESS_NORMALIZE 2u         // a vector
+#define STRESS_PHONG 3u             // diffuse.rgb, specular.rgb, shininess, n, l, v
+#define STRESS_CAMERA 4u            // corner, du, dv, pixel x, y, offset
+#define STRESS_UNIT_INTERVAL 5u     // two words of random bits
+#define STRESS_TRIANGLE 6u          // o, d, v0, v1, v2: what the exact tier's filter says; lo, hi, and 1 for a certain hit, -1 for a certain miss, else 0
+#define STRESS_SPHERE 7u            // o, d, center, radius, -1 or +1 for the root: the same
+#define STRESS_NUMBERS_IN 16u
+#define STRESS_BOX_IN 14u
+#define STRESS_LEAVE_IN 9u
+#define STRESS_LEAVE_OUT 20u
+
 // ------------------------------------------------------------------------------------------------------ dialects of C and GLSL
 #ifdef GL_core_profile
 #define X(number, id, name, text) layout(constant_id = number) const bool HAS_##id = true;
@@ -189,6 +203,14 @@ struct trace_args {
     uint first, count;      // rays
     uint root;              // reference of the root
     uint list_first;        // exact tier: entries of BINDING_LIST that earlier dispatches have filled
+};
+
+// One dispatch of a stress_*.comp, which reads numbers at BINDING_RAYS and writes numbers at BINDING_HITS.
+struct stress_args {
+    vec4 base;              // xyz and w as base and scale in render/upload.h
+    uint count;             // cases
+    uint root;              // reference of the root
+    uint what;              // stress_numbers.comp: STRESS_*, the function
 };
 
 // What a dispatch reports; the host zeroes it before.

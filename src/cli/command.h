@@ -44,6 +44,7 @@ bool command_devices(struct run *run);
 bool command_compare(struct run *run);
 bool command_probe(struct run *run);
 bool command_cost(struct run *run);
+bool command_stress(struct run *run);
 
 // A context that reports to run->error, for the parts of the library that are not behind gnomon.h.
 struct context run_context(struct run *run);

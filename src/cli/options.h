@@ -16,7 +16,8 @@ enum {
     COMMAND_COMPARE = 1 << 5,
     COMMAND_COST = 1 << 6,
     COMMAND_PROBE = 1 << 7,
-    COMMAND_ALL = (1 << 8) - 1,
+    COMMAND_STRESS = 1 << 8,
+    COMMAND_ALL = (1 << 9) - 1,
 };
 
 #define MOST_POSITIONALS 2
@@ -35,9 +36,10 @@ struct settings {
     uint32_t verbose; // how often -v was given
     int progress;     // enum progress_mode
     uint32_t threads;
-    const char *device, *output, *rays;
+    const char *device, *output, *rays, *only;
     struct size size;
     uint32_t spp, seed, repeat, tile_pixels, rounds;
+    uint32_t ray_count; // 0: the command's own
     int accuracy;       // enum gn_accuracy; negative: not given
     uint32_t aovs;      // enum gn_aov, or-ed
     char disable[1024]; // comma-separated

@@ -4,6 +4,13 @@
 #include "kernels/pending_again.h"
 #include "kernels/render.h"
 #include "kernels/render_fp64.h"
+#include "kernels/stress_box.h"
+#include "kernels/stress_box_fp64.h"
+#include "kernels/stress_film.h"
+#include "kernels/stress_leave.h"
+#include "kernels/stress_leave_fp64.h"
+#include "kernels/stress_numbers.h"
+#include "kernels/stress_numbers_fp64.h"
 #include "kernels/trace.h"
 #include "kernels/trace_again.h"
 #include "kernels/trace_fp64.h"
@@ -19,6 +26,13 @@ static const struct embedded KERNELS[] = {
     [KERNEL_TRACE_FP64] = {"trace_fp64", kernel_trace_fp64, sizeof kernel_trace_fp64},
     [KERNEL_TRACE_REFINE] = {"trace_refine", kernel_trace_refine, sizeof kernel_trace_refine},
     [KERNEL_TRACE_AGAIN] = {"trace_again", kernel_trace_again, sizeof kernel_trace_again},
+    [KERNEL_STRESS_FILM] = {"stress_film", kernel_stress_film, sizeof kernel_stress_film},
+    [KERNEL_STRESS_BOX] = {"stress_box", kernel_stress_box, sizeof kernel_stress_box},
+    [KERNEL_STRESS_LEAVE] = {"stress_leave", kernel_stress_leave, sizeof kernel_stress_leave},
+    [KERNEL_STRESS_NUMBERS] = {"stress_numbers", kernel_stress_numbers, sizeof kernel_stress_numbers},
+    [KERNEL_STRESS_BOX_FP64] = {"stress_box_fp64", kernel_stress_box_fp64, sizeof kernel_stress_box_fp64},
+    [KERNEL_STRESS_LEAVE_FP64] = {"stress_leave_fp64", kernel_stress_leave_fp64, sizeof kernel_stress_leave_fp64},
+    [KERNEL_STRESS_NUMBERS_FP64] = {"stress_numbers_fp64", kernel_stress_numbers_fp64, sizeof kernel_stress_numbers_fp64},
     [KERNEL_PENDING_AGAIN] = {"pending_again", kernel_pending_again, sizeof kernel_pending_again},
 };
 

@@ -8,12 +8,19 @@
 enum kernel_name {
     KERNEL_RENDER,
     KERNEL_TRACE,
+    KERNEL_STRESS_FILM,     // pieces of the shaders alone, for the stress cases
+    KERNEL_STRESS_BOX,
+    KERNEL_STRESS_LEAVE,
+    KERNEL_STRESS_NUMBERS,
     // These need a device with doubles.
     KERNEL_RENDER_FP64,
     KERNEL_TRACE_FP64,
     KERNEL_TRACE_REFINE,    // fp32, with the exact tier's hits brought to 1 ulp in fp64
     KERNEL_TRACE_AGAIN,     // the exact tier's second stage
     KERNEL_PENDING_AGAIN,   // the same for pending samples of a picture
+    KERNEL_STRESS_BOX_FP64,
+    KERNEL_STRESS_LEAVE_FP64,
+    KERNEL_STRESS_NUMBERS_FP64,
 };
 
 struct kernel_specialization {

@@ -1,0 +1,5 @@
+// Boxes alone, in fp64.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define FP64
+#include "stress_box.glsl"

@@ -1,0 +1,5 @@
+// Rays that leave a surface, in fp64.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define FP64
+#include "stress_leave.glsl"
