@@ -343,6 +343,9 @@ void gn_cost_destroy(struct gn_cost *cost);
 const struct gn_cost_row *gn_cost_rows(const struct gn_cost *cost, uint32_t *count);
 const struct gn_cost_skipped *gn_cost_skipped(const struct gn_cost *cost, uint32_t *count);
 
+// What gn_probe found on the device: tiers[enum gn_accuracy].
+const struct gn_probe_row *gn_cost_probe(const struct gn_cost *cost, uint32_t *count, const struct gn_probe_tier **tiers);
+
 struct gn_cost_summary {
     uint32_t width, height;     // of the picture
     uint32_t stride[2];         // every so manieth of its pixels was rendered, across and down: for the errors of arithmetic, of sampling

@@ -245,6 +245,12 @@ static size_t occurrences(const char *text, const char *what) {
     return count;
 }
 
+// Blanks the data of pictures, in which any four letters may stand.
+static void blank_pictures(char *text) {
+    for (char *at = text; (at = strstr(at, "base64,")); at++)
+        for (char *data = at + 7; *data && *data != '"'; data++) *data = '.';
+}
+
 static void the_report_is_complete_in_itself(void **state) {
     struct fixture *f = *state;
     if (!f->device) skip();
@@ -253,13 +259,16 @@ static void the_report_is_complete_in_itself(void **state) {
     struct file_bytes page;
     assert_true(file_read(&page, &ctx, REPORT, GN_IO));
     assert_true(is_well_formed(page.data));
-    assert_null(strstr(page.data, "http"));
-    assert_null(strstr(page.data, "<script"));
-    assert_null(strstr(page.data, "nan"));
-    assert_non_null(strstr(page.data, "still_life.json"));
-    assert_int_equal(occurrences(page.data, "<svg"), 2);
     uint32_t tiers = gn_device_info(f->device)->has_fp64 ? 4 : 3;
     assert_int_equal(occurrences(page.data, "src=\"data:image/png;base64,iVBORw0KGgo"), 2 * tiers + 2 + 5); // and scale, reference, changes
+    blank_pictures(page.data);
+    assert_null(strstr(page.data, "http"));
+    assert_null(strstr(page.data, "<script"));
+    assert_null(strstr(page.data, "\"nan"));
+    assert_null(strstr(page.data, "inf\""));
+    assert_non_null(strstr(page.data, "still_life.json"));
+    assert_non_null(strstr(page.data, "inversesqrt")); // of the probe
+    assert_int_equal(occurrences(page.data, "<svg"), 2);
     file_bytes_finish(&page);
 }
 
@@ -277,6 +286,7 @@ static void the_program_tells_rows(void **state) {
         for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) assert_true(json_is_number(json_object_get(row, numbers[k])));
         assert_true(json_is_string(json_object_get(row, "accuracy")));
     }
+    assert_true(json_array_size(json_object_get(json_object_get(object, "probe"), "rows")) > 10);
     assert_true(program_has("report.html"));
     json_decref(object);
     program_free(&result);

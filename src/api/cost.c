@@ -5,6 +5,7 @@
 
 #include "api/handles.h"
 #include "measure/cost/report.h"
+#include "measure/probe.h"
 
 #define DEFAULT_ROUNDS 5
 #define DEFAULT_SECONDS 60.0
@@ -99,9 +100,12 @@ struct gn_cost *gn_cost_measure(struct gn_device *device, struct gn_scene *scene
     if (!settle(&settled, &ctx, scene, params) || !scene_bvh(scene, &ctx)) return NULL;
     if (!(out = array_alloc(&ctx, 1, sizeof *out, "what accuracy costs"))) return NULL;
     describe_place(&out->place, device, scene);
-    if (cost_measure(&out->cost, &ctx, &device->device, &scene->scene, &scene->bvh, &settled) && device_validated(&device->device, &ctx) &&
-        tell_all(out, &ctx))
+    if (probe_measure(out->place.probe, GN_PROBE_ROWS, &out->place.probe_count, &ctx, &device->device) &&
+        cost_measure(&out->cost, &ctx, &device->device, &scene->scene, &scene->bvh, &settled) && device_validated(&device->device, &ctx) &&
+        tell_all(out, &ctx)) {
+        probe_judge(out->place.tiers, out->place.probe, out->place.probe_count, device->device.has_fp64);
         return out;
+    }
     gn_cost_destroy(out);
     return NULL;
 }
@@ -124,6 +128,12 @@ const struct gn_cost_row *gn_cost_rows(const struct gn_cost *cost, uint32_t *cou
 const struct gn_cost_skipped *gn_cost_skipped(const struct gn_cost *cost, uint32_t *count) {
     *count = cost->cost.skipped_count;
     return cost->skipped;
+}
+
+const struct gn_probe_row *gn_cost_probe(const struct gn_cost *cost, uint32_t *count, const struct gn_probe_tier **tiers) {
+    *count = cost->place.probe_count;
+    *tiers = cost->place.tiers;
+    return cost->place.probe;
 }
 
 void gn_cost_summary(const struct gn_cost *cost, struct gn_cost_summary *summary) {

@@ -1,9 +1,11 @@
 // gnomon cost: what accuracy costs in time, on this scene and device.
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/interrupt.h"
+#include "cli/probe.h"
 #include "cli/report.h"
 
 static json_t *row_json(const struct gn_cost_row *row) {
@@ -55,7 +57,7 @@ static json_t *skipped_json(const struct gn_cost *cost) {
     return list;
 }
 
-static json_t *as_json(const struct run *run, const struct gn_cost *cost, const struct gn_device *device) {
+static json_t *as_json(const struct run *run, const struct gn_cost *cost, const struct gn_device *device, const struct findings *findings) {
     struct gn_cost_summary summary;
     gn_cost_summary(cost, &summary);
     const struct json_member members[] = {
@@ -69,6 +71,7 @@ static json_t *as_json(const struct run *run, const struct gn_cost *cost, const 
         {"reference_spp", json_integer(summary.reference_spp)},
         {"rows", rows_json(cost)},
         {"skipped", skipped_json(cost)},
+        {"probe", findings_json(findings, device)},
         {"report", run->settings.output ? json_words(run->settings.output) : json_null()},
         {"time_ms", json_ms(run_ms(run))},
     };
@@ -131,6 +134,34 @@ static bool save(struct run *run, const struct gn_cost *cost) {
     return saved;
 }
 
+// What the probe found, in the form in which it is told.
+static struct findings *take_findings(struct run *run, const struct gn_cost *cost) {
+    struct context ctx = run_context(run);
+    struct findings *findings = array_alloc(&ctx, 1, sizeof *findings, "what the probe found");
+    const struct gn_probe_tier *tiers;
+    if (!findings) return NULL;
+    const struct gn_probe_row *rows = gn_cost_probe(cost, &findings->count, &tiers);
+    memcpy(findings->rows, rows, findings->count * sizeof *rows);
+    memcpy(findings->tiers, tiers, sizeof findings->tiers);
+    return findings;
+}
+
+static bool report(struct run *run, const struct gn_cost *cost, const struct gn_device *device) {
+    struct findings *findings = take_findings(run, cost);
+    if (!findings) return false;
+    bool done = true;
+    if (run->settings.json) {
+        done = run_result(run, as_json(run, cost, device, findings));
+    } else if (!run->settings.quiet) {
+        progress_clear(&run->view);
+        print(cost);
+        printf("\n");
+        findings_print(run, findings, device);
+    }
+    free(findings);
+    return done;
+}
+
 bool command_cost(struct run *run) {
     const struct settings *settings = &run->settings;
     if (settings->output && !run_check_output(run, settings->output, "html|htm")) return false;
@@ -143,11 +174,8 @@ bool command_cost(struct run *run) {
                                           .seconds = settings->seconds,
                                           .host = &run->host};
     struct gn_scene *scene = gn_scene_load(settings->positionals[0], &run->host, &run->error);
-    bool done = scene && (device = run_device(run)) && (cost = gn_cost_measure(device, scene, &params, &run->error)) && save(run, cost);
-    if (done && settings->json)
-        done = run_result(run, as_json(run, cost, device));
-    else if (done && !settings->quiet)
-        print(cost);
+    bool done = scene && (device = run_device(run)) && (cost = gn_cost_measure(device, scene, &params, &run->error)) && save(run, cost) &&
+                report(run, cost, device);
     gn_cost_destroy(cost);
     gn_device_destroy(device);
     gn_scene_destroy(scene);

@@ -4,13 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/probe.h"
 #include "cli/report.h"
-
-struct findings {
-    struct gn_probe_row rows[GN_PROBE_ROWS];
-    uint32_t count;
-    struct gn_probe_tier tiers[GN_ACCURACY_COUNT];
-};
 
 // How tiers are listed: the cheapest first.
 static const enum gn_accuracy ORDER[GN_ACCURACY_COUNT] = {GN_FAST, GN_ROBUST, GN_EXACT, GN_FP64};
@@ -38,7 +33,7 @@ static json_t *row_json(const struct findings *findings, const struct gn_probe_r
     return JSON_MEMBERS(members);
 }
 
-static json_t *as_json(const struct findings *findings, const struct gn_device *device) {
+json_t *findings_json(const struct findings *findings, const struct gn_device *device) {
     json_t *rows = json_array(), *tiers = json_object(), *because = json_object();
     for (uint32_t i = 0; i < findings->count; i++) json_array_append_new(rows, row_json(findings, &findings->rows[i]));
     for (int i = 0; i < GN_ACCURACY_COUNT; i++) {
@@ -91,7 +86,7 @@ static bool go_together(const struct gn_probe_row *row, const struct gn_probe_ro
     return strncmp(row->name, "fp32 ", 5) == 0 && strncmp(next->name, "fp64 ", 5) == 0 && strcmp(row->name + 5, next->name + 5) == 0;
 }
 
-static void print(const struct run *run, const struct findings *findings, const struct gn_device *device) {
+void findings_print(const struct run *run, const struct findings *findings, const struct gn_device *device) {
     printf("%s, %s\n\n%-26s %-18s %-18s %-23s\n", device_name(device), device_driver(device), "WHAT", "FP32", "FP64", "NEEDED BY");
     for (uint32_t i = 0; i < findings->count; i++) {
         const struct gn_probe_row *row = &findings->rows[i];
@@ -123,9 +118,9 @@ bool command_probe(struct run *run) {
     bool done = findings && (device = run_device(run)) &&
                 gn_probe(device, &run->host, findings->rows, GN_PROBE_ROWS, &findings->count, findings->tiers, &run->error);
     if (done && run->settings.json)
-        done = run_result(run, as_json(findings, device));
+        done = run_result(run, findings_json(findings, device));
     else if (done)
-        progress_clear(&run->view), print(run, findings, device);
+        progress_clear(&run->view), findings_print(run, findings, device);
     done = done && judge(run, findings);
     gn_device_destroy(device);
     free(findings);

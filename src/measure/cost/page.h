@@ -25,4 +25,7 @@ void page_table(struct page *page, const char *const *axes, size_t count);
 // page_pictures.c: the reference, every tier's picture and error map, the error maps of the other settings, the scale.
 bool page_pictures(struct page *page);
 
+// page_probe.c: what the device's arithmetic does.
+void page_probe(struct page *page);
+
 #endif

@@ -214,6 +214,7 @@ static bool write_page(struct page *page) {
     write_arithmetic(page);
     write_sampling(page);
     if (!page_pictures(page)) return false;
+    page_probe(page);
     write_method(page);
     return true;
 }

@@ -40,6 +40,7 @@ const char cost_style[] =
     "th:first-child,td:first-child{text-align:left;padding-left:0}\n"
     "td.words{text-align:left;white-space:normal}td small{color:var(--faint);font-size:.92em}\n"
     "tr.group td{padding-top:1.15rem;color:var(--faint);white-space:normal}tr.group b{color:var(--ink)}\n"
+    "table.probe{font-size:.82rem}table.probe td{padding-top:.14rem;padding-bottom:.14rem}table.probe td:nth-child(4){white-space:nowrap}\n"
     "tr.on td:first-child::after{content:\" ●\";font-size:.6em;vertical-align:.25em;color:var(--faint)}\n"
     "tr.worst td{color:var(--c5)}\n"
     ".pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(17rem,1fr));gap:1.4rem 1.2rem;margin-top:1rem}\n"
