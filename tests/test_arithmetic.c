@@ -162,23 +162,28 @@ static void test_verdicts(void **state) {
         uint32_t tier, single, doubles;
         bool available, keeps_doubles;
         const char *says;
+        bool hardware; // pretended
     } cases[] = {
-        {TIER_EXACT, 0, 0, true, true, NULL},
-        {TIER_FP64, 0, 0, true, true, NULL},
-        {TIER_EXACT, FAULT_CONTRACTS, 0, false, true, "accuracy 'exact' would be wrong with the fp32 arithmetic of"},
-        {TIER_EXACT, FAULT_COMPARES, 0, false, true, "NaN"},
-        {TIER_EXACT, 0, FAULT_ROUNDS, true, false, NULL},
-        {TIER_EXACT, FAULT_ROUNDS, FAULT_ROUNDS, false, true, "nearest"},
-        {TIER_FP64, 0, FAULT_DIVIDES, false, true, "accuracy 'fp64' would be wrong with the fp64 arithmetic of"},
-        {TIER_FP64, FAULT_CONTRACTS, 0, true, true, NULL},
-        {TIER_ROBUST, FAULT_CONTRACTS, FAULT_ROUNDS, true, true, NULL},
-        {TIER_FAST, FAULT_CONTRACTS, FAULT_ROUNDS, true, true, NULL},
+        {TIER_EXACT, 0, 0, true, true, NULL, false},
+        {TIER_FP64, 0, 0, true, true, NULL, false},
+        {TIER_EXACT, FAULT_CONTRACTS, 0, false, true, "accuracy 'exact' would be wrong with the fp32 arithmetic of", false},
+        {TIER_EXACT, FAULT_COMPARES, 0, false, true, "NaN", false},
+        {TIER_EXACT, 0, FAULT_ROUNDS, true, false, NULL, false},
+        {TIER_EXACT, FAULT_ROUNDS, FAULT_ROUNDS, false, true, "nearest", false},
+        {TIER_FP64, 0, FAULT_DIVIDES, false, true, "accuracy 'fp64' would be wrong with the fp64 arithmetic of", false},
+        {TIER_FP64, FAULT_CONTRACTS, 0, true, true, NULL, false},
+        {TIER_ROBUST, FAULT_CONTRACTS, FAULT_ROUNDS, true, true, NULL, false},
+        {TIER_ROBUST, FAULT_CONTRACTS, 0, false, true, "accuracy 'robust' would be wrong with the fp32 arithmetic of", true},
+        {TIER_ROBUST, FAULT_ROUNDS | FAULT_DIVIDES, 0, false, true, "quotients", true},
+        {TIER_ROBUST, FAULT_ROUNDS, FAULT_CONTRACTS, true, true, NULL, true},
+        {TIER_FAST, FAULT_CONTRACTS, FAULT_ROUNDS, true, true, NULL, false},
     };
-    const bool has_fp64 = device->has_fp64;
+    const bool has_fp64 = device->has_fp64, software = device->software;
     for (size_t i = 0; has_fp64 && i < COUNT(cases); ++i) {
         struct context *ctx = fixture_context();
         ctx->host.message = count_message;
         warnings = 0;
+        device->software = !cases[i].hardware;
         device->arithmetic[0] = (struct device_arithmetic){.checked = true, .faults = cases[i].single};
         device->arithmetic[1] = (struct device_arithmetic){.checked = true, .faults = cases[i].doubles};
         assert_int_equal(tier_available(ctx, device, cases[i].tier), cases[i].available);
@@ -192,12 +197,14 @@ static void test_verdicts(void **state) {
         device->has_fp64 = has_fp64;
     }
     memset(device->arithmetic, 0, sizeof device->arithmetic);
+    device->software = software;
 }
 
 static void test_checks_once(void **state) {
     (void)state;
     struct device *device = fixture_device();
-    assert_true(tier_available(fixture_context(), device, TIER_ROBUST));
+    assert_true(tier_available(fixture_context(), device, TIER_FAST));
+    assert_true(!device->software || tier_available(fixture_context(), device, TIER_ROBUST));
     assert_false(device->arithmetic[0].checked || device->arithmetic[1].checked);
     fixture_assert(tier_available(fixture_context(), device, TIER_EXACT));
     assert_true(device->arithmetic[0].checked && device->arithmetic[1].checked == device->has_fp64);

@@ -171,22 +171,31 @@ static bool check_once(struct context *ctx, struct device *device, bool fp64) {
     return true;
 }
 
-static bool refuse(struct context *ctx, const struct device *device, const char *tier, bool fp64) {
+// Faults that a tier cannot live with. Rounding is monotone in any direction, and that is all that the robust tier asks of it.
+static uint32_t fatal_faults(uint32_t tier) { return tier == TIER_ROBUST ? ~(uint32_t)FAULT_ROUNDS : ~0u; }
+
+static bool accept(struct context *ctx, const struct device *device, uint32_t tier, const char *name, bool fp64) {
+    const uint32_t faults = device->arithmetic[fp64].faults & fatal_faults(tier);
+    if (!faults) return true;
     return fail(ctx, GN_NO_DEVICE,
-                "accuracy '%s' would be wrong with the %s arithmetic of %s (%s): %s; the reference (--reference) is right everywhere", tier,
-                fp64 ? "fp64" : "fp32", device->info.name, device->info.driver, arithmetic_fault_text(device->arithmetic[fp64].faults));
+                "accuracy '%s' would be wrong with the %s arithmetic of %s (%s): %s; the reference (--reference) is right everywhere", name,
+                fp64 ? "fp64" : "fp32", device->info.name, device->info.driver, arithmetic_fault_text(faults));
+}
+
+static void take_doubles_away(struct context *ctx, struct device *device) {
+    notify(ctx, GN_LEVEL_WARNING, "the doubles of %s are not used: %s", device->info.name,
+           arithmetic_fault_text(device->arithmetic[true].faults));
+    device->has_fp64 = false;
 }
 
 bool arithmetic_suffices(struct context *ctx, struct device *device, uint32_t tier) {
-    const uint32_t *single = &device->arithmetic[false].faults, *doubles = &device->arithmetic[true].faults;
-    if (tier != TIER_EXACT && tier != TIER_FP64) return true;
-    if (device->has_fp64 && !check_once(ctx, device, true)) return false;
-    if (tier == TIER_FP64) return !*doubles || refuse(ctx, device, "fp64", true);
-    if (!check_once(ctx, device, false)) return false;
-    if (*single) return refuse(ctx, device, "exact", false);
-    if (*doubles && device->has_fp64) {
-        notify(ctx, GN_LEVEL_WARNING, "the doubles of %s are not used: %s", device->info.name, arithmetic_fault_text(*doubles));
-        device->has_fp64 = false;
-    }
+    const bool robust = tier == TIER_ROBUST && !device->software, exact = tier == TIER_EXACT, doubles = tier == TIER_FP64;
+    if ((exact || doubles) && device->has_fp64 && !check_once(ctx, device, true)) return false;
+    if ((exact || robust) && !check_once(ctx, device, false)) return false;
+    if (doubles) return accept(ctx, device, tier, "fp64", true);
+    if (robust) return accept(ctx, device, tier, "robust", false);
+    if (!exact) return true;
+    if (!accept(ctx, device, tier, "exact", false)) return false;
+    if (device->has_fp64 && device->arithmetic[true].faults) take_doubles_away(ctx, device);
     return true;
 }

@@ -1,5 +1,5 @@
-// Whether a device calculates as the error bounds of the exact and fp64 tiers assume: asked once, with a tiny kernel, when such a tier is
-// first used. What a specification allows and a driver does are two things; a tier that would be wrong does not run.
+// Whether a device calculates as the tiers from robust on assume: asked once, with a tiny kernel, when such a tier is first used. What a
+// specification allows and a driver does are two things; a tier that would be wrong does not run.
 #ifndef RENDER_ARITHMETIC_H
 #define RENDER_ARITHMETIC_H
 
@@ -52,7 +52,8 @@ double round_to(bool fp64, double x);
 uint32_t compared(double a, double b);
 
 // Whether a device can be relied on for a tier. The first time that matters it runs the check, and keeps what it found in
-// device->arithmetic; doubles with a fault are taken from the exact tier, which does without. Else GN_NO_DEVICE, with what is wrong.
+// device->arithmetic; doubles with a fault are taken from the exact tier, which does without. Else GN_NO_DEVICE, with what is wrong. `fast`
+// promises nothing that could break, and `robust`, the default, is not held up on software devices, where our tests run.
 bool arithmetic_suffices(struct context *ctx, struct device *device, uint32_t tier);
 
 #endif
