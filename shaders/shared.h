@@ -7,17 +7,36 @@
 
 // ------------------------------------------------------------------------------------------------------------- effects
 // What a scene may call for. Each row is a specialization constant (its number), a bit in C, a name on the command line, and what calls for it.
-#define EFFECTS(X)                                                                          \
-    X(0, TRIANGLES,      "triangles",      "a triangle or a mesh is in the scene")          \
-    X(1, SPHERES,        "spheres",        "a sphere is in the scene")                      \
-    X(2, BVH,            "bvh",            "more than a few primitives are in the scene")   \
-    X(3, SMOOTH_NORMALS, "smooth_normals", "a mesh has vertex normals")                     \
-    X(4, DIFFUSE,        "diffuse",        "a light and a material with a diffuse colour")  \
-    X(5, SPECULAR,       "specular",       "a light and a material with a specular colour") \
-    X(6, SHADOWS,        "shadows",        "a light, and a shape that can stand in its way") \
-    X(7, ANTIALIASING,   "antialiasing",   "more than one sample per pixel")
+#define EFFECTS(X)                                                                                            \
+    X(0, TRIANGLES,      "triangles",       "a triangle or a mesh is in the scene")                           \
+    X(1, SPHERES,        "spheres",         "a sphere is in the scene")                                       \
+    X(2, BVH,            "bvh",             "more than a few primitives are in the scene")                    \
+    X(3, SMOOTH_NORMALS, "smooth_normals",  "a mesh has vertex normals")                                      \
+    X(4, DIFFUSE,        "diffuse",         "a light and a material with a diffuse colour")                   \
+    X(5, SPECULAR,       "specular",        "a light and a material with a specular colour")                  \
+    X(6, SHADOWS,        "shadows",         "a light, and a shape that can stand in its way")                 \
+    X(7, ANTIALIASING,   "antialiasing",    "more than one sample per pixel")                                 \
+    X(8, FILTER,         "filter",          "a reconstruction filter other than the pixel's square")          \
+    X(9, DEPTH_OF_FIELD, "depth_of_field",  "a lens with a radius")                                           \
+    X(10, MOTION_BLUR,   "motion_blur",     "a camera or a shape that moves")                                 \
+    X(11, INSTANCES,     "instances",       "a mesh that is drawn more than once, or moves")                  \
+    X(12, DIRECTIONAL,   "directional",     "a light whose rays are parallel")                                \
+    X(13, SPOT,          "spot",            "a light with a cone")                                            \
+    X(14, EMISSION,      "emission",        "a material that sends out light, on a shape")                    \
+    X(15, SOFT_SHADOWS,  "soft_shadows",    "a light with a size")                                            \
+    X(16, ENVIRONMENT,   "environment",     "a picture behind everything")                                    \
+    X(17, BLINN,         "blinn_phong",     "a light and a highlight from the half vector")                   \
+    X(18, GGX,           "ggx",             "a metallic-roughness material")                                  \
+    X(19, TEXTURES,      "textures",        "a material with a picture on it")                                \
+    X(20, NORMAL_MAPS,   "normal_maps",     "a material with a normal map")                                   \
+    X(21, ALPHA,         "alpha",           "a material that is not there everywhere")                        \
+    X(22, REFLECTION,    "reflection",      "a mirror that sees something")                                   \
+    X(23, REFRACTION,    "refraction",      "a dielectric")                                                   \
+    X(24, ABSORPTION,    "absorption",      "a dielectric whose inside takes light away")                     \
+    X(25, INDIRECT,      "indirect",        "light that surfaces send to each other")                         \
+    X(26, FOG,           "fog",             "a medium")
 
-#define EFFECT_COUNT 8
+#define EFFECT_COUNT 27
 
 // --------------------------------------------------------------------------------------------------------------- tiers
 // How decisions are made. Each row is a value of the specialization constant TIER, a name, and one GLSL file tier_<name>.glsl.
@@ -76,7 +95,14 @@
 #define BINDING_GLOBALS    15       // global words
 #define BINDING_PENDING    16       // exact tier: storage buffer, struct pending
 #define BINDING_LIST       17       // exact tier, trace kernel: storage buffer, numbers of undecided rays
-#define BINDING_COUNT      18
+#define BINDING_UVS        18       // vertex texture coordinates: one word4 per vertex (u, v, 0, 0)
+#define BINDING_TEXTURES   19       // texture words, by texture
+#define BINDING_TEXELS     20       // four texels to a word4, 8 bits a channel, red lowest; each texture begins a word
+#define BINDING_SKY        21       // environment: one word4 per texel
+#define BINDING_SKY_ROWS   22       // environment: one word4 per row
+#define BINDING_EMITTERS   23       // emitter words: the triangles of the lights that are meshes
+#define BINDING_INSTANCES  24       // instance words
+#define BINDING_COUNT      25
 
 // Node: 4 word4. A node holds the boxes of its two children and what they are.
 //   0: left min.xyz,  left ref      1: left max.xyz,  right ref

@@ -97,7 +97,26 @@ static void reasons_name_the_culprit(void **state) {
                                                       "light 1 and the diffuse color of material 'm' on shape 0",
                                                       "no material in use has a specular color that a light could show",
                                                       "a triangle alone casts no shadow on itself",
-                                                      "7 samples per pixel"};
+                                                      "7 samples per pixel",
+                                                      "samples are spread over their pixel",
+                                                      "the camera is a pinhole",
+                                                      "nothing moves",
+                                                      "there are no instances",
+                                                      "there are no directional lights",
+                                                      "there are no spot lights",
+                                                      "no material in use sends out light",
+                                                      "no light has a size",
+                                                      "the background is one colour",
+                                                      "no material in use is Blinn-Phong",
+                                                      "no material in use is metallic-roughness",
+                                                      "no material in use has a texture",
+                                                      "no material in use has a normal map",
+                                                      "every material in use is opaque",
+                                                      "no material in use is a mirror",
+                                                      "no material in use is a dielectric",
+                                                      "no dielectric in use takes light away",
+                                                      "the scene does not ask for indirect light",
+                                                      "there is no medium"};
     struct scene scene = load_case(&c);
     struct plan plan;
     scratch_assert(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 7, .disable = c.disable}));
@@ -126,8 +145,8 @@ static void names_are_checked(void **state) {
     static const struct {
         const char *list, *says;
     } bad[] = {
-        {"shadow", "'shadow' is no effect, expected some of: triangles,spheres,bvh,smooth_normals,diffuse,specular,shadows,antialiasing; "
-                   "did you mean 'shadows'?"},
+        {"shadow", "'shadow' is no effect, expected some of: triangles,spheres,bvh,smooth_normals,diffuse,specular,shadows,antialiasing,filter"},
+        {"shadow", "fog; did you mean 'shadows'?"},
         {"bvh,,shadows", "'' is no effect"},
         {"bvh,", "'' is no effect"},
         {",", "'' is no effect"},

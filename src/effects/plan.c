@@ -162,6 +162,114 @@ static bool rule_ANTIALIASING(const struct facts *facts, char *because) {
     return says(because, facts->spp > 1, "%u sample%s per pixel", facts->spp, facts->spp == 1 ? "" : "s");
 }
 
+// A box of the pixel's size is what antialiasing does without; one sample has no filter.
+static bool rule_FILTER(const struct facts *facts, char *because) {
+    const struct scene_film *film = &facts->scene->film;
+    if (film->filter == FILTER_BOX && film->filter_radius == 0.5f) return says(because, false, "samples are spread over their pixel");
+    return says(because, facts->spp > 1, "a filter of radius %g and %u sample%s per pixel", film->filter_radius, facts->spp, facts->spp == 1 ? "" : "s");
+}
+
+// Every point of a disk of radius 0 is its center.
+static bool rule_DEPTH_OF_FIELD(const struct facts *facts, char *because) {
+    const float radius = facts->scene->camera.lens_radius;
+    if (!(radius > 0)) return says(because, false, "the camera is a pinhole");
+    return says(because, true, "a lens of radius %g", radius);
+}
+
+static bool rule_MOTION_BLUR(const struct facts *facts, char *because) {
+    if (facts->scene->camera.moves) return says(because, true, "the camera moves");
+    for (uint32_t i = 0; i < facts->scene->shape_count; i++)
+        if (is_there(facts, i) && facts->scene->shapes[i].moves) return says(because, true, "shape %u moves", i);
+    return says(because, false, "nothing moves");
+}
+
+static bool rule_INSTANCES(const struct facts *facts, char *because) {
+    for (uint32_t i = 0; i < facts->scene->shape_count; i++)
+        if (is_there(facts, i) && facts->scene->shapes[i].type == SHAPE_INSTANCE) return says(because, true, "shape %u", i);
+    return says(because, false, "there are no instances");
+}
+
+// ----------------------------------------------------------------------------------------------------------------- lights
+
+static bool shines(const struct scene_light *light) { return light->intensity[0] > 0 || light->intensity[1] > 0 || light->intensity[2] > 0; }
+
+static bool light_of_type(const struct facts *facts, enum light_type type, const char *name, char *because) {
+    for (uint32_t i = 0; i < facts->scene->light_count; i++)
+        if (facts->scene->lights[i].type == type && shines(&facts->scene->lights[i])) return says(because, true, "light %u", i);
+    return says(because, false, "there are no %s lights", name);
+}
+
+static bool rule_DIRECTIONAL(const struct facts *facts, char *because) { return light_of_type(facts, LIGHT_DIRECTIONAL, "directional", because); }
+static bool rule_SPOT(const struct facts *facts, char *because) { return light_of_type(facts, LIGHT_SPOT, "spot", because); }
+
+// The first material in use for which `calls` holds.
+static bool material_calls(const struct facts *facts, bool (*calls)(const struct scene_material *), const char *none, char *because) {
+    for (uint32_t i = 0; i < facts->scene->material_count; i++)
+        if (facts->used_by[i] != NOT_USED && calls(&facts->scene->materials[i]))
+            return says(because, true, "material '%s' on shape %u", excerpt_word(facts->scene->materials[i].name).text, facts->used_by[i]);
+    return says(because, false, "%s", none);
+}
+
+static bool any_positive(const float v[3]) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
+static bool emits(const struct scene_material *m) { return any_positive(m->emission); }
+static bool rule_EMISSION(const struct facts *facts, char *because) { return material_calls(facts, emits, "no material in use sends out light", because); }
+
+static bool rule_SOFT_SHADOWS(const struct facts *facts, char *because) {
+    for (uint32_t i = 0; i < facts->scene->light_count; i++)
+        if (facts->scene->lights[i].type == LIGHT_AREA) return says(because, true, "light %u, which is shape %u", i, facts->scene->lights[i].shape);
+    return says(because, false, "no light has a size");
+}
+
+static bool rule_ENVIRONMENT(const struct facts *facts, char *because) {
+    const struct scene_environment *sky = &facts->scene->environment;
+    if (sky->width == 0 || !(sky->scale > 0)) return says(because, false, "the background is one colour");
+    return says(because, true, "an environment of %u × %u texels", sky->width, sky->height);
+}
+
+// -------------------------------------------------------------------------------------------------------------- materials
+
+static bool is_blinn(const struct scene_material *m) { return m->model == MODEL_BLINN_PHONG && any_positive(m->specular); }
+static bool rule_BLINN(const struct facts *facts, char *because) { return material_calls(facts, is_blinn, "no material in use is Blinn-Phong", because); }
+
+static bool is_ggx(const struct scene_material *m) { return m->model == MODEL_METALLIC_ROUGHNESS; }
+static bool rule_GGX(const struct facts *facts, char *because) { return material_calls(facts, is_ggx, "no material in use is metallic-roughness", because); }
+
+static bool has_texture(const struct scene_material *m) {
+    return m->diffuse_map.texture != NO_TEXTURE || m->roughness_map.texture != NO_TEXTURE || m->emission_map.texture != NO_TEXTURE;
+}
+static bool rule_TEXTURES(const struct facts *facts, char *because) { return material_calls(facts, has_texture, "no material in use has a texture", because); }
+
+static bool has_normal_map(const struct scene_material *m) { return m->normal_map.texture != NO_TEXTURE && m->normal_scale != 0; }
+static bool rule_NORMAL_MAPS(const struct facts *facts, char *because) {
+    return material_calls(facts, has_normal_map, "no material in use has a normal map", because);
+}
+
+static bool is_cut_out(const struct scene_material *m) { return m->alpha_mode != ALPHA_OPAQUE; }
+static bool rule_ALPHA(const struct facts *facts, char *because) { return material_calls(facts, is_cut_out, "every material in use is opaque", because); }
+
+static bool is_mirror(const struct scene_material *m) {
+    return m->model == MODEL_MIRROR ? any_positive(m->diffuse) : m->model <= MODEL_LAMBERT && any_positive(m->reflection);
+}
+static bool rule_REFLECTION(const struct facts *facts, char *because) { return material_calls(facts, is_mirror, "no material in use is a mirror", because); }
+
+static bool is_glass(const struct scene_material *m) { return m->model == MODEL_DIELECTRIC; }
+static bool rule_REFRACTION(const struct facts *facts, char *because) { return material_calls(facts, is_glass, "no material in use is a dielectric", because); }
+
+static bool absorbs(const struct scene_material *m) { return is_glass(m) && !m->thin && any_positive(m->absorption); }
+static bool rule_ABSORPTION(const struct facts *facts, char *because) {
+    return material_calls(facts, absorbs, "no dielectric in use takes light away", because);
+}
+
+static bool rule_INDIRECT(const struct facts *facts, char *because) {
+    if (!facts->scene->paths.indirect) return says(because, false, "the scene does not ask for indirect light");
+    return says(because, facts->scene->paths.max_depth > 0, "the scene asks for indirect light, paths of %u", facts->scene->paths.max_depth);
+}
+
+static bool rule_FOG(const struct facts *facts, char *because) {
+    if (!(facts->scene->fog.density > 0)) return says(because, false, "there is no medium");
+    return says(because, true, "a density of %g", facts->scene->fog.density);
+}
+
 // -------------------------------------------------------------------------------------------------------------------- plan
 
 static const struct {

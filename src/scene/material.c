@@ -11,11 +11,19 @@ bool material_find(const struct material_table *table, const char *name, uint32_
     return found != NULL;
 }
 
+struct scene_material material_default(void) {
+    static const struct scene_map none = {.texture = NO_TEXTURE, .transform = {1, 0, 0, 0, 1, 0}};
+    return (struct scene_material){
+        .ambient = {0.8f, 0.8f, 0.8f}, .diffuse = {0.8f, 0.8f, 0.8f}, .shininess = 32, .roughness = 1, .ior = 1.5f, .alpha = 1, .alpha_cutoff = 0.5f,
+        .diffuse_map = none, .normal_map = none, .normal_scale = 1, .roughness_map = none, .emission_map = none,
+    };
+}
+
 struct scene_material *material_add(struct material_table *table, struct context *ctx, const char *name) {
     if (!table->numbers) table->numbers = json_object();
     struct scene_material *material = array_push(&table->items, ctx);
     if (!material) return NULL;
-    *material = (struct scene_material){.ambient = {0.8f, 0.8f, 0.8f}, .diffuse = {0.8f, 0.8f, 0.8f}, .shininess = 32};
+    *material = material_default();
     material->name = strdup(name);
     const bool known = json_object_get(table->numbers, name) != NULL;
     // "nocheck": names in OBJ files need not be UTF-8.

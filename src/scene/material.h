@@ -21,7 +21,10 @@ struct material_table {
 // Whether there is a material of this name; *number is set if so.
 bool material_find(const struct material_table *table, const char *name, uint32_t *number);
 
-// Adds a material with the default values: diffuse and ambient 0.8, no highlight, shininess 32. A name that is there already keeps
+// A material without a name: diffuse and ambient 0.8, no highlight, shininess 32; opaque, without textures.
+struct scene_material material_default(void);
+
+// Adds a material with the default values. A name that is there already keeps
 // leading to its first material. NULL when memory is missing.
 struct scene_material *material_add(struct material_table *table, struct context *ctx, const char *name);
 

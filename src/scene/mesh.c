@@ -8,6 +8,7 @@
 void mesh_finish(struct scene_mesh *mesh) {
     free(mesh->positions);
     free(mesh->normals);
+    free(mesh->uvs);
     free(mesh->indices);
     free(mesh->materials);
     *mesh = (struct scene_mesh){0};

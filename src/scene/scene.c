@@ -15,8 +15,9 @@
 
 bool scene_load(struct scene *out, struct context *ctx, const char *path) {
     *out = (struct scene){
-        .film = {.width = 512, .height = 512, .spp = 1, .transfer = TRANSFER_SRGB},
+        .film = {.width = 512, .height = 512, .spp = 1, .transfer = TRANSFER_SRGB, .filter = FILTER_BOX, .filter_radius = 0.5f},
         .shadows = true,
+        .paths = {.max_depth = 8, .roulette_depth = 3},
     };
     struct scene_build build = {.scene = out, .ctx = ctx, .materials = MATERIAL_TABLE};
     char suffix[16];
@@ -34,6 +35,14 @@ bool scene_load(struct scene *out, struct context *ctx, const char *path) {
 void scene_finish(struct scene *scene) {
     for (uint32_t i = 0; i < scene->shape_count; i++) mesh_finish(&scene->shapes[i].mesh);
     materials_free(scene->materials, scene->material_count);
+    for (uint32_t i = 0; i < scene->texture_count; i++) {
+        free(scene->textures[i].name);
+        free(scene->textures[i].texels);
+    }
+    for (uint32_t i = 0; i < scene->prototype_count; i++) mesh_finish(&scene->prototypes[i]);
+    free(scene->environment.texels);
+    free(scene->textures);
+    free(scene->prototypes);
     free(scene->path);
     free(scene->lights);
     free(scene->shapes);
