@@ -83,7 +83,7 @@
 #define BINDING_OBJECTS     3       // object words, by object
 #define BINDING_MATERIALS   4       // material words, by material
 #define BINDING_LIGHTS      5       // light words
-#define BINDING_INDICES     6       // vertex numbers for normals: one word4 per triangle (three vertices, unused)
+#define BINDING_INDICES     6       // vertex numbers for attributes: one word4 per triangle (three vertices, unused)
 #define BINDING_NORMALS     7       // vertex normals: one word4 per vertex (x, y, z, unused)
 #define BINDING_FILM        8       // rgba32f storage image: sum of samples r, g, b; samples done
 #define BINDING_RESIDUE     9       // rgba32f storage image: what Kahan summation still owes r, g, b; nonfinite samples
@@ -120,16 +120,39 @@
 #define TRIANGLE_WORDS 3
 // Sphere: 2 word4:  center.xyz, radius    object, material, 0, 0
 #define SPHERE_WORDS 2
-// Object: 1 word4:  first word of its triangles in INDICES or NO_NORMALS, 0, 0, 0
+// Object: 1 word4:  first word of its triangles in INDICES or NO_ATTRIBUTES, number of the light that it is or NO_LIGHT, 0, 0
 #define OBJECT_WORDS 1
-#define NO_NORMALS 0xffffffffu
-// Material: 3 word4:  ambient.rgb, shininess    diffuse.rgb, 0    specular.rgb, 0
-#define MATERIAL_WORDS 3
+#define NO_ATTRIBUTES 0xffffffffu
+#define NO_LIGHT 0xffffffffu
+// Material: 15 word4. Maps are two each: row 0 of the transform, texture or NO_TEXTURE_WORD; row 1, 1 for sRGB.
+//   0: ambient.rgb, shininess       1: diffuse.rgb, enum material_model | alpha_mode << 8 | thin << 16
+//   2: specular.rgb, roughness      3: reflection.rgb, metallic      4: emission.rgb, ior
+//   5: absorption.rgb per device unit, priority                      6: alpha, cutoff, scale of the normal map, 0
+//   7: diffuse map    9: normal map    11: roughness map    13: emission map
+#define MATERIAL_WORDS 15
+#define MATERIAL_MAP_DIFFUSE 7u
+#define MATERIAL_MAP_NORMAL 9u
+#define MATERIAL_MAP_ROUGHNESS 11u
+#define MATERIAL_MAP_EMISSION 13u
+#define NO_TEXTURE_WORD 0xffffffffu
+// Material models and alpha modes, as in scene/scene.h.
+#define PHONG_MODEL 0u
+#define BLINN_PHONG_MODEL 1u
+#define LAMBERT_MODEL 2u
+#define METALLIC_ROUGHNESS_MODEL 3u
+#define DIELECTRIC_MODEL 4u
+#define MIRROR_MODEL 5u
+#define ALPHA_MODE_OPAQUE 0u
+#define ALPHA_MODE_MASK 1u
+#define ALPHA_MODE_BLEND 2u
 // Light: 2 word4:  position.xyz, falloff (0 none, 1 inverse square)    intensity.rgb, 0
 // Positions are in device units, intensities as the scene has them.
 #define LIGHT_WORDS 2
-// Globals: 2 word4:  background.rgb, 0    ambient.rgb, 0
-#define GLOBAL_WORDS 2
+// Globals: 4 word4:
+//   0: background.rgb, the most rays of a path after the camera's     1: ambient.rgb, the ray from which on paths end by chance
+//   2: fog: albedo.rgb, density per device unit                       3: fog: center.xyz and radius of the ball that it fills; and
+//   4: fog: anisotropy, 0, 0, 0
+#define GLOBAL_WORDS 5
 
 // Pending samples of the exact tier: those with a ray that the kernel's error bounds left undecided. The host decides the ray and the kernel does the sample again
 // with the answers it has, until it comes through. A record is PENDING_WORDS word4:

@@ -35,7 +35,7 @@ uint leave_self(surface s) { return OFFSET == OFFSET_BOUND_SELF ? s.primitive : 
 // The interpolated vertex normal, or ng where the mesh has none or the sum vanishes.
 real3 smooth_normal(hit h, real3 ng) {
     uint first = texelFetch(object_words, h.object * OBJECT_WORDS).x;
-    if (first == NO_NORMALS) return ng;
+    if (first == NO_ATTRIBUTES) return ng;
     uvec4 vertex = texelFetch(index_words, int(first) + h.index);
     real3 n0 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.x)).xyz));
     real3 n1 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.y)).xyz));

@@ -230,7 +230,12 @@ static bool fill_spheres(void *data, void *to, uint64_t offset, uint64_t size) {
 
 // ------------------------------------------------------------------------------------------------------------- shading
 
-static bool has_normals(const struct scene_shape *shape) { return shape->type == SHAPE_MESH && shape->mesh.normals; }
+#define EFFECTS_WITH_UVS (EFFECT_TEXTURES | EFFECT_NORMAL_MAPS | EFFECT_ALPHA)
+
+// Whether kernels look at a mesh's vertices once more after the hit.
+static bool has_attributes(const struct upload *u, const struct scene_shape *shape) {
+    return (shape->mesh.normals && u->effects & EFFECT_SMOOTH_NORMALS) || (shape->mesh.uvs && u->effects & EFFECTS_WITH_UVS);
+}
 
 // Words [first, first + count) of an array that is the meshes' parts one after another.
 struct part { uint64_t first, count; };
@@ -250,7 +255,7 @@ static bool fill_indices(void *data, void *to, uint64_t offset, uint64_t size) {
     uint32_t vertices = 0;
     for (uint32_t i = 0; i < u->scene->shape_count; i++) {
         const struct scene_mesh *mesh = &u->scene->shapes[i].mesh;
-        if (!has_normals(&u->scene->shapes[i])) continue;
+        if (!has_attributes(u, &u->scene->shapes[i])) continue;
         if (overlap(want, triangles, mesh->triangle_count, &have)) {
             struct word4 *word = (struct word4 *)to + (have.first - want.first);
             const uint32_t *index = mesh->indices + 3 * (have.first - triangles);
@@ -263,21 +268,33 @@ static bool fill_indices(void *data, void *to, uint64_t offset, uint64_t size) {
     return true;
 }
 
-static bool fill_normals(void *data, void *to, uint64_t offset, uint64_t size) {
-    const struct upload *u = data;
+// One attribute of the vertices, of `width` numbers, 0 where a mesh has none.
+static bool fill_attribute(const struct upload *u, void *to, uint64_t offset, uint64_t size, uint32_t width, const float *(*of)(const struct scene_mesh *)) {
     struct part want = {offset / sizeof(struct word4), size / sizeof(struct word4)}, have;
     uint64_t vertices = 0;
     for (uint32_t i = 0; i < u->scene->shape_count; i++) {
         const struct scene_mesh *mesh = &u->scene->shapes[i].mesh;
-        if (!has_normals(&u->scene->shapes[i])) continue;
+        if (!has_attributes(u, &u->scene->shapes[i])) continue;
         if (overlap(want, vertices, mesh->vertex_count, &have)) {
             struct word4 *word = (struct word4 *)to + (have.first - want.first);
-            const float *normal = mesh->normals + 3 * (have.first - vertices);
-            for (uint64_t k = 0; k < have.count; k++) word[k] = word4_of(normal + 3 * k, 0);
+            const float *from = of(mesh);
+            memset(word, 0, have.count * sizeof *word);
+            for (uint64_t k = 0; from && k < have.count; k++) memcpy(word[k].w, from + width * (have.first - vertices + k), width * sizeof *from);
         }
         vertices += mesh->vertex_count;
     }
     return true;
+}
+
+static const float *normals_of(const struct scene_mesh *mesh) { return mesh->normals; }
+static const float *uvs_of(const struct scene_mesh *mesh) { return mesh->uvs; }
+static bool fill_normals(void *data, void *to, uint64_t offset, uint64_t size) { return fill_attribute(data, to, offset, size, 3, normals_of); }
+static bool fill_uvs(void *data, void *to, uint64_t offset, uint64_t size) { return fill_attribute(data, to, offset, size, 2, uvs_of); }
+
+static uint32_t light_of(const struct scene *scene, uint32_t object) {
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        if (scene->lights[i].type == LIGHT_AREA && scene->lights[i].shape == object) return i;
+    return NO_LIGHT;
 }
 
 static bool fill_objects(void *data, void *to, uint64_t offset, uint64_t size) {
@@ -285,22 +302,41 @@ static bool fill_objects(void *data, void *to, uint64_t offset, uint64_t size) {
     uint64_t begin = offset / sizeof(struct word4), end = begin + size / sizeof(struct word4);
     uint32_t triangles = 0;
     for (uint32_t i = 0; i < u->scene->shape_count && i < end; i++) {
-        bool normals = has_normals(&u->scene->shapes[i]);
-        if (i >= begin) ((struct word4 *)to)[i - begin] = (struct word4){{normals ? triangles : NO_NORMALS, 0, 0, 0}};
-        if (normals) triangles += u->scene->shapes[i].mesh.triangle_count;
+        bool attributes = has_attributes(u, &u->scene->shapes[i]);
+        uint32_t light = u->effects & EFFECT_SOFT_SHADOWS ? light_of(u->scene, i) : NO_LIGHT;
+        if (i >= begin) ((struct word4 *)to)[i - begin] = (struct word4){{attributes ? triangles : NO_ATTRIBUTES, light, 0, 0}};
+        if (attributes) triangles += u->scene->shapes[i].mesh.triangle_count;
     }
     return true;
 }
 
+static void write_map(struct word4 to[2], const struct scene *scene, const struct scene_map *map) {
+    bool used = map->texture != NO_TEXTURE && map->texture <= scene->texture_count;
+    to[0] = word4_of(map->transform, used ? map->texture - 1 : NO_TEXTURE_WORD);
+    to[1] = word4_of(map->transform + 3, map->srgb);
+}
+
+static void write_material(const struct upload *u, const struct scene_material *m, struct word4 *word) {
+    float absorption[3];
+    for (int i = 0; i < 3; i++) absorption[i] = m->absorption[i] / u->scale;
+    word[0] = word4_of(m->ambient, float_bits(m->shininess));
+    word[1] = word4_of(m->diffuse, (uint32_t)m->model | (uint32_t)m->alpha_mode << 8 | (uint32_t)m->thin << 16);
+    word[2] = word4_of(m->specular, float_bits(m->roughness));
+    word[3] = word4_of(m->reflection, float_bits(m->metallic));
+    word[4] = word4_of(m->emission, float_bits(m->ior));
+    word[5] = word4_of(absorption, m->priority);
+    word[6] = (struct word4){{float_bits(m->alpha), float_bits(m->alpha_cutoff), float_bits(m->normal_scale), 0}};
+    write_map(word + MATERIAL_MAP_DIFFUSE, u->scene, &m->diffuse_map);
+    write_map(word + MATERIAL_MAP_NORMAL, u->scene, &m->normal_map);
+    write_map(word + MATERIAL_MAP_ROUGHNESS, u->scene, &m->roughness_map);
+    write_map(word + MATERIAL_MAP_EMISSION, u->scene, &m->emission_map);
+}
+
 static bool fill_materials(void *data, void *to, uint64_t offset, uint64_t size) {
-    const struct upload *u = data;
     struct word4 *word = to;
+    const struct upload *u = data;
     const struct scene_material *m = u->scene->materials + offset / (MATERIAL_WORDS * sizeof *word);
-    for (uint64_t left = size / (MATERIAL_WORDS * sizeof *word); left; left--, m++, word += MATERIAL_WORDS) {
-        word[0] = word4_of(m->ambient, float_bits(m->shininess));
-        word[1] = word4_of(m->diffuse, 0);
-        word[2] = word4_of(m->specular, 0);
-    }
+    for (uint64_t left = size / (MATERIAL_WORDS * sizeof *word); left; left--, m++, word += MATERIAL_WORDS) write_material(u, m, word);
     return true;
 }
 
@@ -315,9 +351,33 @@ static bool fill_lights(void *data, void *to, uint64_t offset, uint64_t size) {
     return true;
 }
 
+// The ball that fog fills: around the middle of the scene, with all shapes and the camera in it.
+static void fog_ball(const struct upload *u, float ball[4]) {
+    const struct scene *scene = u->scene;
+    double eye2 = 0, corner2 = 0;
+    for (int i = 0; i < 3; i++) {
+        bool empty = !(scene->bounds_min[i] <= scene->bounds_max[i]);
+        double low = empty ? scene->camera.position[i] : scene->bounds_min[i], high = empty ? scene->camera.position[i] : scene->bounds_max[i];
+        double middle = 0.5 * (low + high), eye = scene->camera.position[i] - middle, corner = 0.5 * (high - low);
+        eye2 += eye * eye;
+        corner2 += corner * corner;
+        ball[i] = (float)((middle - u->base[i]) * u->scale);
+    }
+    ball[3] = (float)(1.0001 * sqrt(fmax(eye2, corner2)) * u->scale);
+}
+
 static bool fill_globals(void *data, void *to, uint64_t offset, uint64_t size) {
     const struct upload *u = data;
-    struct word4 words[GLOBAL_WORDS] = {word4_of(u->scene->background, 0), word4_of(u->scene->ambient, 0)};
+    const struct scene *scene = u->scene;
+    float ball[4];
+    fog_ball(u, ball);
+    struct word4 words[GLOBAL_WORDS] = {
+        word4_of(scene->background, scene->paths.max_depth),
+        word4_of(scene->ambient, scene->paths.roulette_depth),
+        word4_of(scene->fog.albedo, float_bits(scene->fog.density / u->scale)),
+        word4_of(ball, float_bits(ball[3])),
+        {{float_bits(scene->fog.anisotropy), 0, 0, 0}},
+    };
     memcpy(to, (const char *)words + offset, size);
     return true;
 }
@@ -333,23 +393,24 @@ static bool make(struct buffer *buffer, struct context *ctx, struct device *devi
     return count == 0 || buffer_fill(buffer, ctx, device, record, fill, u);
 }
 
-static void count_smooth(const struct scene *scene, uint64_t *triangles, uint64_t *vertices) {
+static void count_attributes(const struct upload *u, uint64_t *triangles, uint64_t *vertices) {
     *triangles = *vertices = 0;
-    for (uint32_t i = 0; i < scene->shape_count; i++) {
-        if (!has_normals(&scene->shapes[i])) continue;
-        *triangles += scene->shapes[i].mesh.triangle_count;
-        *vertices += scene->shapes[i].mesh.vertex_count;
+    for (uint32_t i = 0; i < u->scene->shape_count; i++) {
+        if (!has_attributes(u, &u->scene->shapes[i])) continue;
+        *triangles += u->scene->shapes[i].mesh.triangle_count;
+        *vertices += u->scene->shapes[i].mesh.vertex_count;
     }
 }
 
 static bool make_shading(struct device_scene *out, struct context *ctx, struct device *device, struct upload *u) {
-    uint64_t smooth_triangles = 0, smooth_vertices = 0;
-    bool smooth = u->effects & EFFECT_SMOOTH_NORMALS;
-    if (smooth) count_smooth(u->scene, &smooth_triangles, &smooth_vertices);
+    uint64_t triangles, vertices;
+    bool normals = u->effects & EFFECT_SMOOTH_NORMALS, uvs = u->effects & EFFECTS_WITH_UVS, objects = normals || uvs || u->effects & EFFECT_SOFT_SHADOWS;
+    count_attributes(u, &triangles, &vertices);
     out->light_count = u->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR) ? u->scene->light_count : 0;
-    return make(&out->objects, ctx, device, u, "objects", smooth ? u->scene->shape_count : 0, OBJECT_WORDS, fill_objects) &&
-           make(&out->indices, ctx, device, u, "vertex indices", smooth_triangles, 1, fill_indices) &&
-           make(&out->normals, ctx, device, u, "normals", smooth_vertices, 1, fill_normals) &&
+    return make(&out->objects, ctx, device, u, "objects", objects ? u->scene->shape_count : 0, OBJECT_WORDS, fill_objects) &&
+           make(&out->indices, ctx, device, u, "vertex indices", triangles, 1, fill_indices) &&
+           make(&out->normals, ctx, device, u, "normals", normals ? vertices : 0, 1, fill_normals) &&
+           make(&out->uvs, ctx, device, u, "texture coordinates", uvs ? vertices : 0, 1, fill_uvs) &&
            make(&out->materials, ctx, device, u, "materials", u->scene->material_count, MATERIAL_WORDS, fill_materials) &&
            make(&out->lights, ctx, device, u, "lights", out->light_count, LIGHT_WORDS, fill_lights) &&
            make(&out->globals, ctx, device, u, "globals", 1, GLOBAL_WORDS, fill_globals);
@@ -378,7 +439,7 @@ bool device_scene_init(struct device_scene *out, struct context *ctx, struct dev
 
 void device_scene_finish(struct device_scene *ds, struct device *device) {
     struct buffer *buffers[] = {&ds->nodes, &ds->triangles, &ds->spheres, &ds->objects, &ds->materials,
-                                &ds->lights, &ds->indices, &ds->normals, &ds->globals};
+                                &ds->lights, &ds->indices, &ds->normals, &ds->uvs, &ds->globals};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) buffer_finish(buffers[i], device);
     *ds = (struct device_scene){0};
 }
@@ -392,6 +453,7 @@ size_t device_scene_bindings(struct device_scene *ds, struct kernel_binding *bin
         {BINDING_NODES, &ds->nodes, NULL},         {BINDING_TRIANGLES, &ds->triangles, NULL}, {BINDING_SPHERES, &ds->spheres, NULL},
         {BINDING_OBJECTS, &ds->objects, NULL},     {BINDING_MATERIALS, &ds->materials, NULL}, {BINDING_LIGHTS, &ds->lights, NULL},
         {BINDING_INDICES, &ds->indices, NULL},     {BINDING_NORMALS, &ds->normals, NULL},     {BINDING_GLOBALS, &ds->globals, NULL},
+        {BINDING_UVS, &ds->uvs, NULL},
     };
     size_t count = shading ? DEVICE_SCENE_BINDINGS : 3;
     memcpy(bindings, all, count * sizeof *bindings);
