@@ -51,7 +51,7 @@ void pending_ask(inout pending_sample pending, ray r, bool any, uint number) {
     pending.asks = true;
     pending.question[0] = uvec4(floatBitsToUint(vec3(r.o)), r.self);
     pending.question[1] = uvec4(floatBitsToUint(vec3(r.d)), floatBitsToUint(float(r.tmax)));
-    pending.question[2] = uvec4(number, any ? 1u : 0u, 0u, 0u);
+    pending.question[2] = uvec4(2u * number + (any ? 1u : 0u), r.target_object, r.target_index, floatBitsToUint(r.time));
 }
 
 // Writes the question down, or that the sample is done. A new one that finds no place is asked again by the next dispatch. Returns whether there was a question

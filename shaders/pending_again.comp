@@ -10,8 +10,12 @@ layout(push_constant) uniform push { trace_args args; };
 layout(set = 0, binding = BINDING_STATUS) buffer status_buffer { status dispatch_status; };
 
 ray asked_ray(uint word) {
-    uvec4 w1 = pending_words[word + 1u], w2 = pending_words[word + 2u];
-    return ray_make(dvec3(uintBitsToFloat(w1.xyz)), dvec3(uintBitsToFloat(w2.xyz)), 0.0, double(uintBitsToFloat(w2.w)), w1.w);
+    uvec4 w1 = pending_words[word + 1u], w2 = pending_words[word + 2u], w3 = pending_words[word + 3u];
+    ray r = ray_make(dvec3(uintBitsToFloat(w1.xyz)), dvec3(uintBitsToFloat(w2.xyz)), 0.0, double(uintBitsToFloat(w2.w)), w1.w);
+    r.target_object = int(w3.y);
+    r.target_index = int(w3.z);
+    r.time = uintBitsToFloat(w3.w);
+    return r;
 }
 
 void answer(uint word, uvec4 head, uint number, hit h) {
@@ -24,12 +28,13 @@ void answer(uint word, uvec4 head, uint number, hit h) {
 void main() {
     uint record = gl_GlobalInvocationID.x, word = record * PENDING_WORDS;
     if (record >= min(pending_count, PENDING_CAPACITY)) return;
-    uvec4 head = pending_words[word], w3 = pending_words[word + 3u];
+    uvec4 head = pending_words[word];
+    uint question = pending_words[word + 3u].x;
     if (head.w != PENDING_ASKS || head.z >= PENDING_ANSWERS) return;
-    bool any = w3.y != 0u;
+    bool any = (question & 1u) != 0u;
     int steps = int(MAX_STEPS);
     search q = traverse(asked_ray(word), any, args.root, steps);
     if (steps <= 0 || search_undecided(q, any)) return;
-    answer(word, head, w3.x, q.best);
+    answer(word, head, question >> 1, q.best);
     atomicAdd(dispatch_status.decided, 1u);
 }

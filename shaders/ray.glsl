@@ -17,6 +17,8 @@ struct ray {
     real tmin, tmax;   // open interval, in units of d
     int exponent;      // d is the direction that was given, times 2^-exponent
     uint self;
+    int target_object, target_index; // what lies at the ray's end, a light: it is not hit. Object -1: nothing; index -1: all of the object
+    float time;        // 0 when the shutter opens, below 1
 };
 
 struct hit {
@@ -59,13 +61,13 @@ real times_power_of_two(real x, int exponent) {
     return ((x * power_of_two_real(first)) * power_of_two_real(second)) * power_of_two_real(exponent - first - second);
 }
 
-// A ray through o (device units) along d (any scale, not zero, finite), for t in units of d as given.
+// A ray through o (device units) along d (any scale, not zero, finite), for t in units of d as given. It has no target, and its time is 0.
 #ifdef FP64
 ray ray_make(dvec3 o, dvec3 d, double tmin, double tmax, uint self) {
     double largest = max(abs(d.x), max(abs(d.y), abs(d.z)));
     int exponent = clamp(int((unpackDouble2x32(largest).y >> 20) & 0x7ffu) - 1023, -1000, 1000);
     double up = power_of_two_double(-exponent), down = power_of_two_double(exponent);
-    return ray(o, d * up, tmin * down, tmax * down, exponent, self);
+    return ray(o, d * up, tmin * down, tmax * down, exponent, self, -1, -1, 0.0);
 }
 #else
 ray ray_make(vec3 o, vec3 d, float tmin, float tmax, uint self) {
@@ -79,7 +81,7 @@ ray ray_make(vec3 o, vec3 d, float tmin, float tmax, uint self) {
     int exponent = clamp(exponent_of(largest), -126, 126);
     d *= power_of_two(-exponent);
     exponent -= lift;
-    return ray(o, d, times_power_of_two(tmin, exponent), times_power_of_two(tmax, exponent), exponent, self);
+    return ray(o, d, times_power_of_two(tmin, exponent), times_power_of_two(tmax, exponent), exponent, self, -1, -1, 0.0);
 }
 #endif
 

@@ -157,7 +157,7 @@
 // Pending samples of the exact tier: those with a ray that the kernel's error bounds left undecided. The host decides the ray and the kernel does the sample again
 // with the answers it has, until it comes through. A record is PENDING_WORDS word4:
 //   0: pixel x, y in the band; answers so far; state PENDING_*      1: origin.xyz (device units), SELF_*
-//   2: direction.xyz, tmax                                          3: number of the ray in its sample, 1 for any hit, 0, 0
+//   2: direction.xyz, tmax                                          3: 2 × number of the ray in its sample + 1 for any hit, its target, its time
 //   4 + 2k: answer k: number of the ray, object, index, primitive (as a hit has them)      5 + 2k: t, u, v, 0
 #define PENDING_CAPACITY 1024
 #define PENDING_ANSWERS 63

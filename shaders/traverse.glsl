@@ -55,12 +55,17 @@ void consider_verdict(inout search q, ray r, verdict c, hit candidate) {
     }
 }
 
+// Whether a primitive is what the ray is shot at.
+bool is_target(ray r, int object, int index) {
+    return HAS_SOFT_SHADOWS && object == r.target_object && (index == r.target_index || r.target_index < 0);
+}
+
 void test_triangle(uint number, ray r, shear s, inout search q) {
     uvec4 w0 = triangle_word(TRIANGLE_WORDS * number);
     uvec4 w1 = triangle_word(TRIANGLE_WORDS * number + 1u);
     uvec4 w2 = triangle_word(TRIANGLE_WORDS * number + 2u);
     real3 v0 = real3(uintBitsToFloat(w0.xyz)), v1 = real3(uintBitsToFloat(w1.xyz)), v2 = real3(uintBitsToFloat(w2.xyz));
-    if (number == r.self) return;
+    if (number == r.self || is_target(r, int(w0.w), int(w1.w))) return;
     if (TIER == TIER_EXACT) {
         verdict c = triangle_exact(r.o, s, v0, v1, v2);
         consider_verdict(q, r, c, hit(c.tuv.x, c.tuv.y, c.tuv.z, number, int(w0.w), int(w1.w)));
@@ -93,6 +98,7 @@ void test_sphere(uint number, ray r, inout search q) {
     uvec4 w1 = sphere_word(SPHERE_WORDS * number + 1u);
     real3 center = real3(uintBitsToFloat(w0.xyz));
     real radius = real(uintBitsToFloat(w0.w));
+    if (is_target(r, int(w1.x), 0)) return;
     if (TIER == TIER_EXACT) {
         test_sphere_exact(number, r, center, radius, int(w1.x), q);
         return;

@@ -20,12 +20,21 @@
 #include "reference/fraction.h"
 #include "reference/interval.h"
 
+// What lies at the end of a shadow ray, a light: it is not in the way. Zeroed is nothing.
+struct ref_target {
+    bool there;
+    uint32_t object;
+    int32_t index; // the primitive in it; -1: all of them
+};
+
 // A ray with exact components: every number is as exact_holds says, but for infinite bounds. d is not zero; where tmin >= tmax nothing is
 // crossed.
 struct ref_ray {
     double o[3], d[3];
     double tmin, tmax;
     uint32_t undecided; // decisions that the first stage left open, so far
+    struct ref_target target;
+    float time; // 0 when the shutter opens, below 1
 };
 
 // The exact form of a ray. False, and a zeroed *out, for one that is invalid: a NaN or infinity in o or d, d = 0, a bound that is NaN.

@@ -23,7 +23,7 @@ static struct crossing start_of(const struct ref_world *world, uint32_t self) {
 
 static struct resolve_answer resolve(const struct ref_world *world, const struct resolve_ray *r) {
     struct resolve_answer answer = {.hit = {.t = INFINITY, .object = -1, .primitive = -1}};
-    struct ref_ray ray = {{r->o[0], r->o[1], r->o[2]}, {r->d[0], r->d[1], r->d[2]}, r->tmin, r->tmax, 0};
+    struct ref_ray ray = {{r->o[0], r->o[1], r->o[2]}, {r->d[0], r->d[1], r->d[2]}, r->tmin, r->tmax, 0, r->target, r->time};
     struct crossing crossing, from = r->self == RESOLVE_NO_SELF ? (struct crossing){.number = RESOLVE_NO_SELF} : start_of(world, r->self);
     if (r->any) {
         answer.hit.object = any_hit(world, &ray, &from) ? 0 : -1;

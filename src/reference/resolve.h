@@ -10,6 +10,8 @@ struct resolve_ray {
     float o[3], d[3], tmin, tmax; // open interval
     uint32_t self;                // number in the BVH of the primitive that the ray starts on, or RESOLVE_NO_SELF
     bool any;                     // occlusion only
+    struct ref_target target;     // is not hit
+    float time;
 };
 
 struct resolve_answer {

@@ -79,12 +79,16 @@ static bool comes_first(struct walk *walk, const struct crossing *candidate) {
     return candidate->primitive < walk->best.primitive;
 }
 
+static bool is_target(const struct ref_target *target, const struct crossing *candidate) {
+    return target->there && target->object == candidate->object && (target->index < 0 || (uint32_t)target->index == candidate->primitive);
+}
+
 // Tests one primitive; true when the walk is over.
 static bool try_primitive(struct walk *walk, uint32_t number) {
     bool is_triangle = number < walk->world->triangle_count;
     if (!(walk->world->effects & (is_triangle ? EFFECT_TRIANGLES : EFFECT_SPHERES))) return false;
     struct crossing candidate;
-    if (!(is_triangle ? cross_triangle : cross_sphere)(&candidate, walk, number)) return false;
+    if (!(is_triangle ? cross_triangle : cross_sphere)(&candidate, walk, number) || is_target(&walk->ray->target, &candidate)) return false;
     candidate.number = number;
     if (walk->any || comes_first(walk, &candidate)) {
         walk->found = true;

@@ -85,11 +85,14 @@ static uint32_t bits_of(float value) {
 
 // A record's question, in scene coordinates. The origin's sum is exact but for components a billion times smaller than the base, which fp64 rounds.
 static struct resolve_ray question(const struct pending *p, const struct word4 *r, const struct device_scene *ds) {
-    struct resolve_ray ray = {.tmin = 0, .tmax = (double)float_of(r[2].w[3]) / ds->scale, .any = r[3].w[1] != 0, .self = RESOLVE_NO_SELF};
+    struct resolve_ray ray = {.tmin = 0, .tmax = (double)float_of(r[2].w[3]) / ds->scale, .any = r[3].w[0] & 1, .self = RESOLVE_NO_SELF};
     for (int i = 0; i < 3; i++) {
         ray.o[i] = (double)float_of(r[1].w[i]) / ds->scale + ds->base[i];
         ray.d[i] = float_of(r[2].w[i]);
     }
+    memcpy(&ray.time, &r[3].w[3], sizeof ray.time);
+    int32_t object = (int32_t)r[3].w[1];
+    if (object >= 0) ray.target = (struct ref_target){.there = true, .object = (uint32_t)object, .index = (int32_t)r[3].w[2]};
     uint32_t self = r[1].w[3];
     if (self != SELF_NONE) ray.self = p->primitive_at[self >> 31][self & ~SELF_SPHERE];
     return ray;
@@ -99,9 +102,9 @@ static struct resolve_ray question(const struct pending *p, const struct word4 *
 static void store_answer(const struct pending *p, struct word4 *r, const struct resolve_answer *answer, float scale, uint32_t triangles) {
     uint32_t at = 4 + 2 * r[0].w[2]++;
     const struct gn_hit *hit = &answer->hit;
-    bool closest = r[3].w[1] == 0 && hit->object >= 0;
+    bool closest = !(r[3].w[0] & 1) && hit->object >= 0;
     uint32_t primitive = closest ? p->slot_of[answer->number] | (answer->number >= triangles ? SELF_SPHERE : 0) : SELF_NONE;
-    r[at] = (struct word4){{r[3].w[0], (uint32_t)hit->object, (uint32_t)hit->primitive, primitive}};
+    r[at] = (struct word4){{r[3].w[0] >> 1, (uint32_t)hit->object, (uint32_t)hit->primitive, primitive}};
     r[0].w[3] = PENDING_ANSWERED;
     r[at + 1] = (struct word4){{bits_of(hit->t * scale), bits_of(hit->u), bits_of(hit->v), 0}};
 }
