@@ -9,6 +9,8 @@
 #include "scene/text.h"
 #include "scene/words.h"
 
+#define MOST_KEYS 32 // of an object of one kind
+
 struct json_at at_root(const struct json_file *file) {
     return (struct json_at){.file = file, .value = file->root};
 }
@@ -68,34 +70,68 @@ bool at_expected(const struct json_at *at, const char *expected) {
     return at_fail(at, "is %s, expected %s", json_is_number(at->value) ? number.text : kinds[json_typeof(at->value)], expected);
 }
 
-static bool unknown_key(const struct json_at *object, const char *key, const char *const *known) {
-    char list[512] = "";
-    struct nearest nearest = nearest_to(key);
-    for (size_t i = 0, used = 0; known[i]; i++) {
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", known[i]);
-        nearest_offer(&nearest, known[i]);
-    }
+// Names parted by commas, as many as fit.
+struct names {
+    char text[768];
+};
+
+static void names_append(struct names *names, const char *format, const char *name) {
+    const size_t used = strlen(names->text);
+    if (used > 0) snprintf(names->text + used, sizeof names->text - used, ", ");
+    const size_t parted = strlen(names->text);
+    snprintf(names->text + parted, sizeof names->text - parted, format, name);
+}
+
+// Reports a fault about a key of an object, at the key.
+static bool fail_at_key(const struct json_at *object, const char *key, const char *message) {
     const struct json_at member = {.file = object->file, .parent = object, .key = key, .value = json_object_get(object->value, key)};
     const char *key_at;
     locate(&member, &key_at);
-    char message[1024];
-    snprintf(message, sizeof message, "has an unknown key '%s', expected one of: %s%s", excerpt_word(key).text, list,
-             nearest_hint(&nearest).text);
     return fail_at(object, key_at, message);
+}
+
+static bool unknown_key(const struct json_at *object, const char *key, const struct json_key *known, uint32_t kind) {
+    struct names names = {""};
+    struct nearest nearest = nearest_to(key);
+    for (size_t i = 0; known[i].name; i++) {
+        if (!(known[i].kinds & kind)) continue;
+        names_append(&names, "%s", known[i].name);
+        nearest_offer(&nearest, known[i].name);
+    }
+    char message[1024];
+    snprintf(message, sizeof message, "has an unknown key '%s', expected one of: %s%s", excerpt_word(key).text, names.text,
+             nearest_hint(&nearest).text);
+    return fail_at_key(object, key, message);
+}
+
+static bool foreign_key(const struct json_at *object, const struct json_key *key, const char *const *kinds, int kind) {
+    struct names names = {""};
+    for (int i = 0; kinds[i]; i++)
+        if (key->kinds >> i & 1) names_append(&names, "\"%s\"", kinds[i]);
+    char message[1024];
+    snprintf(message, sizeof message, "has a key '%s', which belongs to %s, not to \"%s\"", key->name, names.text, kinds[kind]);
+    return fail_at_key(object, key->name, message);
 }
 
 // ------------------------------------------------------------------------------------------------------------------- values
 
-bool at_object(const struct json_at *at, const char *const *known) {
+bool at_object_of_kind(const struct json_at *at, const struct json_key *known, const char *const *names, int kind) {
     if (!json_is_object(at->value)) return at_expected(at, "an object");
     const char *key;
     json_t *value;
     json_object_foreach(at->value, key, value) {
         size_t i = 0;
-        while (known[i] && strcmp(key, known[i]) != 0) i++;
-        if (!known[i]) return unknown_key(at, key, known);
+        while (known[i].name && strcmp(key, known[i].name) != 0) i++;
+        if (!known[i].name) return unknown_key(at, key, known, 1u << kind);
+        if (!(known[i].kinds >> kind & 1)) return foreign_key(at, &known[i], names, kind);
     }
     return true;
+}
+
+bool at_object(const struct json_at *at, const char *const *known) {
+    struct json_key keys[MOST_KEYS + 1] = {{0}};
+    for (size_t i = 0; known[i] && i < MOST_KEYS; i++) keys[i] = (struct json_key){known[i], 1};
+    return at_object_of_kind(at, keys, NULL, 0);
 }
 
 bool at_list(const struct json_at *at, size_t least, size_t most, const char *expected) {
@@ -119,7 +155,11 @@ static const char *const range_texts[] = {
     [RANGE_ANY] = "a number",
     [RANGE_NOT_NEGATIVE] = "a number of at least 0",
     [RANGE_POSITIVE] = "a number greater than 0",
+    [RANGE_SHARE] = "a number from 0 to 1",
     [RANGE_FIELD_OF_VIEW] = "a number greater than 0 and less than 180",
+    [RANGE_CONE] = "a number from 0 to 90",
+    [RANGE_ANISOTROPY] = "a number greater than -1 and less than 1",
+    [RANGE_FILTER] = "a number greater than 0, at most 16",
 };
 
 static bool in_range(double value, enum json_range range) {
@@ -128,6 +168,14 @@ static bool in_range(double value, enum json_range range) {
         return value >= 0;
     case RANGE_POSITIVE:
         return value > 0;
+    case RANGE_SHARE:
+        return value >= 0 && value <= 1;
+    case RANGE_CONE:
+        return value >= 0 && value <= 90;
+    case RANGE_ANISOTROPY:
+        return value > -1 && value < 1;
+    case RANGE_FILTER:
+        return value > 0 && value <= 16;
     case RANGE_FIELD_OF_VIEW:
         return value > 0 && value < 180;
     default:
@@ -159,9 +207,11 @@ bool at_float(const struct json_at *at, enum json_range range, float *out) {
     return true;
 }
 
-bool at_float3(const struct json_at *at, enum json_range range, float out[3]) {
-    if (!at_list(at, 3, 3, "a list of 3 numbers")) return false;
-    for (size_t i = 0; i < 3; i++) {
+bool at_floats(const struct json_at *at, enum json_range range, size_t count, float *out) {
+    char expected[32];
+    snprintf(expected, sizeof expected, "a list of %zu numbers", count);
+    if (!at_list(at, count, count, expected)) return false;
+    for (size_t i = 0; i < count; i++) {
         const struct json_at item = at_item(at, i);
         if (!at_float(&item, range, &out[i])) return false;
     }
@@ -184,9 +234,13 @@ bool at_get_float(const struct json_at *object, const char *key, enum json_range
     return !at_member(&member, object, key) || at_float(&member, range, out);
 }
 
-bool at_get_float3(const struct json_at *object, const char *key, enum json_range range, float out[3]) {
+bool at_get_floats(const struct json_at *object, const char *key, enum json_range range, size_t count, float *out) {
     struct json_at member;
-    return !at_member(&member, object, key) || at_float3(&member, range, out);
+    return !at_member(&member, object, key) || at_floats(&member, range, count, out);
+}
+
+bool at_get_float3(const struct json_at *object, const char *key, enum json_range range, float out[3]) {
+    return at_get_floats(object, key, range, 3, out);
 }
 
 bool at_get_count(const struct json_at *object, const char *key, uint32_t least, uint32_t most, uint32_t *out) {
@@ -213,7 +267,7 @@ bool at_get_bool(const struct json_at *object, const char *key, bool *out) {
 bool at_get_choice(const struct json_at *object, const char *key, const char *const *names, int *out) {
     struct json_at member;
     if (!at_member(&member, object, key)) return true;
-    char expected[128] = "";
+    char expected[192] = "";
     for (size_t i = 0, used = 0; names[i]; i++)
         used += (size_t)snprintf(expected + used, sizeof expected - used, "%s\"%s\"", i == 0 ? "" : names[i + 1] ? ", " : " or ", names[i]);
     const char *name = "";

@@ -27,6 +27,13 @@ bool at_expected(const struct json_at *at, const char *expected);
 
 // Whether this is an object all of whose keys are known; `known` ends with NULL.
 bool at_object(const struct json_at *at, const char *const *known);
+// The same where keys depend on what kind of object it is: `kinds` has bit 1 << number of each kind that has the key, `names` the kinds'
+// names; the last key is NULL. A key of another kind is an error that says which kinds have it.
+struct json_key {
+    const char *name;
+    uint32_t kinds;
+};
+bool at_object_of_kind(const struct json_at *at, const struct json_key *known, const char *const *names, int kind);
 // Whether this is a list of `least` to `most` items; expected: for the message.
 bool at_list(const struct json_at *at, size_t least, size_t most, const char *expected);
 
@@ -36,14 +43,23 @@ bool at_member(struct json_at *out, const struct json_at *object, const char *ke
 bool at_require(const struct json_at *object, const char *key, const char *expected);
 
 // What a number must be.
-enum json_range { RANGE_ANY, RANGE_NOT_NEGATIVE, RANGE_POSITIVE, RANGE_FIELD_OF_VIEW };
+enum json_range {
+    RANGE_ANY,
+    RANGE_NOT_NEGATIVE,
+    RANGE_POSITIVE,
+    RANGE_SHARE,         // 0 to 1
+    RANGE_FIELD_OF_VIEW, // between 0 and 180
+    RANGE_CONE,          // 0 to 90
+    RANGE_ANISOTROPY,    // between -1 and 1
+    RANGE_FILTER,        // above 0, up to 16
+};
 
 // The value as the nearest fp32.
 bool at_float(const struct json_at *at, enum json_range range, float *out);
 // The value as fp64.
 bool at_double(const struct json_at *at, double *out);
-// Three numbers as the nearest fp32.
-bool at_float3(const struct json_at *at, enum json_range range, float out[3]);
+// A list of `count` numbers as the nearest fp32.
+bool at_floats(const struct json_at *at, enum json_range range, size_t count, float *out);
 // A string without a zero in it; valid as long as the file.
 bool at_text(const struct json_at *at, const char *expected, const char **out);
 
@@ -51,6 +67,7 @@ bool at_text(const struct json_at *at, const char *expected, const char **out);
 bool at_get_text(const struct json_at *object, const char *key, const char *expected, const char **out);
 bool at_get_float(const struct json_at *object, const char *key, enum json_range range, float *out);
 bool at_get_float3(const struct json_at *object, const char *key, enum json_range range, float out[3]);
+bool at_get_floats(const struct json_at *object, const char *key, enum json_range range, size_t count, float *out);
 bool at_get_count(const struct json_at *object, const char *key, uint32_t least, uint32_t most, uint32_t *out);
 bool at_get_bool(const struct json_at *object, const char *key, bool *out);
 // One of names[0 …], which end with NULL, by number.

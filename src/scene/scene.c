@@ -13,6 +13,13 @@
 #include "scene/build.h"
 #include "scene/mesh.h"
 
+// What the camera of a model file leaves open: it has a pinhole and stands still.
+static void complete_camera(struct scene_camera *camera) {
+    if (camera->moves) return;
+    memcpy(camera->position_end, camera->position, sizeof camera->position);
+    memcpy(camera->look_at_end, camera->look_at, sizeof camera->look_at);
+}
+
 bool scene_load(struct scene *out, struct context *ctx, const char *path) {
     *out = (struct scene){
         .film = {.width = 512, .height = 512, .spp = 1, .transfer = TRANSFER_SRGB, .filter = FILTER_BOX, .filter_radius = 0.5f},
@@ -28,6 +35,7 @@ bool scene_load(struct scene *out, struct context *ctx, const char *path) {
            (strcmp(suffix, "json") == 0 ? scene_load_json(&build, path) : scene_load_model(&build, path));
     material_table_take(&build.materials, &out->materials, &out->material_count);
     done = done && progress(ctx, "scene", 1, 0);
+    complete_camera(&out->camera);
     if (!done) scene_finish(out);
     return done;
 }

@@ -11,14 +11,14 @@
 
 // A warm grey with a faint highlight stands in where the file names no material.
 static bool add_clay(struct scene_build *build, uint32_t *number) {
-    static const struct scene_material clay = {
-        .ambient = {0.72f, 0.65f, 0.58f}, .diffuse = {0.72f, 0.65f, 0.58f}, .specular = {0.12f, 0.12f, 0.12f}, .shininess = 40};
+    static const float color[3] = {0.72f, 0.65f, 0.58f}, highlight[3] = {0.12f, 0.12f, 0.12f};
     *number = (uint32_t)build->materials.items.count;
     struct scene_material *material = material_add(&build->materials, build->ctx, DEFAULT_MATERIAL);
     if (!material) return false;
-    char *name = material->name;
-    *material = clay;
-    material->name = name;
+    memcpy(material->ambient, color, sizeof color);
+    memcpy(material->diffuse, color, sizeof color);
+    memcpy(material->specular, highlight, sizeof highlight);
+    material->shininess = 40;
     return true;
 }
 
