@@ -9,6 +9,7 @@
 #include "camera.glsl"
 #include "constants.glsl"
 #include "film.glsl"
+#include "filter.glsl"
 #include "pending.glsl"
 #include "phong.glsl"
 #include "ray.glsl"
@@ -20,6 +21,7 @@ layout(local_size_x = GROUP_SIZE) in;
 layout(push_constant) uniform push { render_args args; };
 layout(set = 0, binding = BINDING_LIGHTS) uniform usamplerBuffer light_words;
 layout(set = 0, binding = BINDING_GLOBALS) uniform usamplerBuffer global_words;
+layout(set = 0, binding = BINDING_CAMERA) uniform usamplerBuffer camera_words;
 layout(set = 0, binding = BINDING_STATUS) buffer status_buffer { status dispatch_status; };
 
 const bool HAS_LIGHT = HAS_DIFFUSE || HAS_SPECULAR;
@@ -42,8 +44,16 @@ uvec2 picture_pixel(ivec2 at) {
     return (uvec2(at) + uvec2(0u, args.band_y)) * args.stride + uvec2(args.phase % args.stride, args.phase / args.stride);
 }
 
+float filter_knot(uint knot) { return uintBitsToFloat(texelFetch(camera_words, CAMERA_FILTER + int(knot / 4u))[knot % 4u]); }
+
+float filtered(float u) {
+    filter_cell cell = filter_cell_of(u);
+    return filter_offset(cell, filter_knot(cell.knot), filter_knot(cell.knot + 1u));
+}
+
 ray camera_ray(uvec2 pixel, uint number) {
     vec2 offset = HAS_ANTIALIASING ? film_offset(args.seed, pixel, number, args.spp) : vec2(0.5);
+    if (HAS_FILTER) offset = vec2(filtered(offset.x), filtered(offset.y));
     vec3 direction = camera_direction(args.corner.xyz, args.du.xyz, args.dv.xyz, pixel, offset);
     return ray_make(real3(args.position.xyz), real3(direction), 0.0, INFINITY, SELF_NONE);
 }

@@ -102,7 +102,8 @@
 #define BINDING_SKY_ROWS   22       // environment: one word4 per row
 #define BINDING_EMITTERS   23       // emitter words: the triangles of the lights that are meshes
 #define BINDING_INSTANCES  24       // instance words
-#define BINDING_COUNT      25
+#define BINDING_CAMERA     25       // camera words
+#define BINDING_COUNT      26
 
 // Node: 4 word4. A node holds the boxes of its two children and what they are.
 //   0: left min.xyz,  left ref      1: left max.xyz,  right ref
@@ -153,6 +154,16 @@
 //   2: fog: albedo.rgb, density per device unit                       3: fog: center.xyz and radius of the ball that it fills; and
 //   4: fog: anisotropy, 0, 0, 0
 #define GLOBAL_WORDS 5
+
+// Camera: what is not in render_args; a single word where no effect calls for it.
+//   from CAMERA_FILTER: the film filter's knots, four to a word (render/filter_table.h)
+#define CAMERA_FILTER 0
+#define CAMERA_WORDS (CAMERA_FILTER + FILTER_KNOTS / 4)
+
+// Knots of a film filter: FILTER_CELLS = 2^FILTER_CELL_BITS to each halving of the distance from 0, down to 2^-24.
+#define FILTER_CELL_BITS 5
+#define FILTER_CELLS (1 << FILTER_CELL_BITS)
+#define FILTER_KNOTS (23 * FILTER_CELLS + 4)
 
 // Pending samples of the exact tier: those with a ray that the kernel's error bounds left undecided. The host decides the ray and the kernel does the sample again
 // with the answers it has, until it comes through. A record is PENDING_WORDS word4:

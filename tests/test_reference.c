@@ -42,6 +42,7 @@ static void world_init(struct world *w) {
     w->scene.lights = w->lights;
     w->scene.shadows = true;
     w->scene.camera = (struct scene_camera){.look_at = {0, 0, -1}, .up = {0, 1, 0}, .fov_y_deg = 90};
+    w->scene.film.filter_radius = 0.5f;
     w->material = (struct scene_material){.ambient = {1, 0, 0}, .diffuse = {1, 0, 0}, .specular = {1, 1, 1}, .shininess = 32};
     for (int i = 0; i < 3; i++) w->scene.ambient[i] = 0.2f;
 }

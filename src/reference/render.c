@@ -6,6 +6,7 @@
 #include "reference/sampler.h"
 #include "reference/shade.h"
 #include "render/camera.h"
+#include "render/filter_table.h"
 
 // Rays between two looks at whether to stop.
 #define CHUNK_SAMPLES 4096
@@ -16,6 +17,7 @@ struct picture {
     const struct reference_params *params;
     struct ref_world world;
     struct camera_rays camera;
+    struct filter_table filter;
     atomic_uint_fast64_t rays, nonfinite_pixels;
 };
 
@@ -47,6 +49,7 @@ static void add_sample(struct pixel *pixel, const struct picture *picture, uint3
     const struct reference_params *params = picture->params;
     float offset[2] = {0.5f, 0.5f};
     if (params->effects & EFFECT_ANTIALIASING) sampler_film(offset, params->independent_samples, params->seed, x, y, sample, params->spp);
+    if (params->effects & EFFECT_FILTER) filter_table_offset(offset, &picture->filter);
     struct gn_ray from = camera_ray(&picture->camera, x, y, offset);
     struct ref_ray ray;
     struct crossing crossing;
@@ -111,6 +114,7 @@ bool reference_render(struct reference_film *out, struct context *ctx, const str
     struct picture picture = {.film = out, .scene = scene, .params = params};
     picture.world = ref_world_make(scene, bvh, params->effects);
     picture.camera = camera_rays_make(&scene->camera, params->width, params->height);
+    filter_table_make(&picture.filter, scene->film.filter, scene->film.filter_radius);
     size_t grain = CHUNK_SAMPLES / params->spp;
     if (!parallel_for_progress(ctx, "reference", (size_t)out->color.width * out->color.height, grain, render_some, &picture)) goto fail;
     out->rays = picture.rays;

@@ -1,6 +1,6 @@
 // The camera as the few fp32 numbers that define every camera ray, computed in fp64 on the host and rounded once.
 //
-// The direction through film position (x + a, y + b), pixel (0,0) top left, 0 ≤ a, b < 1, is, for each of its three components, in fp32,
+// The direction through film position (x + a, y + b), pixel (0,0) top left, is, for each of its three components, in fp32,
 // in this order, every operation rounded to nearest (no contraction, no reassociation):
 //     d = ((corner + x·du) + y·dv) + (a·du + b·dv)        x, y the integer pixel converted to fp32
 // and the origin is `position`. The direction is not normalised. du points right by one pixel, dv down by one pixel, corner is

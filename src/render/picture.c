@@ -11,6 +11,7 @@
 #include "render/pieces.h"
 #include "render/render.h"
 #include "render/upload.h"
+#include "render/upload_camera.h"
 
 #define BAND_PIXELS (4u << 20)      // of the film images: 64 MiB each, whatever the picture's size
 #define CHUNK_SAMPLES 16            // samples a pixel gets in one dispatch, at most
@@ -22,7 +23,7 @@ struct pass {
     const struct render_params *params;
     struct device_scene ds;
     struct storage_image film, residue, shade, id;
-    struct buffer status;
+    struct buffer status, camera;
     struct kernel_specialization specialization;
     struct kernel_binding bindings[BINDING_COUNT];
     size_t binding_count;
@@ -64,6 +65,7 @@ static bool make_kernel(struct pass *p) {
     struct kernel_binding others[] = {
         {BINDING_FILM, NULL, &p->film},      {BINDING_RESIDUE, NULL, &p->residue}, {BINDING_AOV_SHADE, NULL, &p->shade},
         {BINDING_AOV_ID, NULL, &p->id},      {BINDING_STATUS, &p->status, NULL},   {BINDING_PENDING, &p->pending.buffer, NULL},
+        {BINDING_CAMERA, &p->camera, NULL},
     };
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) p->bindings[p->binding_count++] = others[i];
     p->specialization = (struct kernel_specialization){.tier = p->params->tier, .effects = p->params->effects, .aovs = p->params->aovs};
@@ -281,6 +283,7 @@ static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh
     double start = clock_seconds();
     if (!device_scene_init(&p->ds, p->ctx, p->device, scene, bvh, p->params->effects, scene->camera.position, true)) return false;
     if (!make_film(p) || !make_status(&p->status, p->ctx, p->device)) return false;
+    if (!upload_camera(&p->camera, p->ctx, p->device, scene, p->params->effects)) return false;
     if (!pending_init(&p->pending, p->ctx, p->device, p->params->tier == TIER_EXACT)) return false;
     out->upload_ms = clock_ms_since(start);
     start = clock_seconds();
@@ -299,6 +302,7 @@ static void pass_finish(struct pass *p) {
     pending_finish(&p->pending, p->device);
     kernel_finish(&p->kernel, p->device);
     buffer_finish(&p->status, p->device);
+    buffer_finish(&p->camera, p->device);
     storage_image_finish(&p->film, p->device);
     storage_image_finish(&p->residue, p->device);
     storage_image_finish(&p->shade, p->device);
