@@ -84,8 +84,8 @@ static void the_front_is_what_nothing_beats(void **state) {
         {1, 3, {{1, 0, true}, {2, 0, false}, {0.5, 1, true}}},
         {1, 3, {{1, NAN, false}, {NAN, 1, false}, {5, INFINITY, false}}},
         {1, 2, {{1.04, 1, true}, {1, 1.04, true}}},
-        {1.05, 2, {{1.04, 1, true}, {1, 1, true}}},   // the same, within the noise
-        {1, 2, {{1.04, 1, false}, {1, 1, true}}},     // the control
+        {1.05, 2, {{1.04, 1, true}, {1, 1, true}}}, // the same, within the noise
+        {1, 2, {{1.04, 1, false}, {1, 1, true}}},   // the control
         {1.05, 2, {{1.06, 1, false}, {1, 1, true}}},
         {1.05, 3, {{1, 1, false}, {1.04, 0.5, true}, {1.5, 0.5, false}}},
     };
@@ -112,9 +112,15 @@ static void a_lattice_is_every_third_pixel(void **state) {
     for (uint32_t tier = 0; tier <= TIER_COUNT; tier++) { // the last is the reference
         struct image whole = {0}, part = {0};
         for (int pass = 0; pass < 2; pass++) {
-            const struct render_params device = {.width = WIDTH, .height = HEIGHT, .spp = 2, .seed = 5, .tier = tier, .effects = plan.effects,
+            const struct render_params device = {.width = WIDTH,
+                                                 .height = HEIGHT,
+                                                 .spp = 2,
+                                                 .seed = 5,
+                                                 .tier = tier,
+                                                 .effects = plan.effects,
                                                  .lattice = pass ? lattice : (struct lattice){0}};
-            const struct reference_params cpu = {.width = WIDTH, .height = HEIGHT, .spp = 2, .seed = 5, .effects = plan.effects, .lattice = device.lattice};
+            const struct reference_params cpu = {
+                .width = WIDTH, .height = HEIGHT, .spp = 2, .seed = 5, .effects = plan.effects, .lattice = device.lattice};
             struct render_film film = {0};
             struct reference_film right = {0};
             if (tier == TIER_FP64 && !f->device->device.has_fp64) continue;
@@ -149,11 +155,25 @@ static void every_axis_is_there(void **state) {
     struct fixture *f = *state;
     if (!f->device) skip();
     static const char *const wanted[][2] = {
-        {"tier", "fast"},         {"tier", "robust"},           {"tier", "exact"},           {"offset", "share"},
-        {"offset", "bound"},      {"offset", "bound and self"}, {"normalize", "inverse root"}, {"normalize", "root and division"},
-        {"power", "built-in"},    {"power", "own"},             {"output", "32-bit float"},  {"output", "8-bit code"},
-        {"sum", "kahan"},         {"sum", "plain"},             {"samples", "1 per pixel"},  {"samples", "4 per pixel"},
-        {"sampler", "sobol, 4 per pixel"}, {"sampler", "independent, 4 per pixel"}, {"together", "exact, 4 per pixel"},
+        {"tier", "fast"},
+        {"tier", "robust"},
+        {"tier", "exact"},
+        {"offset", "share"},
+        {"offset", "bound"},
+        {"offset", "bound and self"},
+        {"normalize", "inverse root"},
+        {"normalize", "root and division"},
+        {"power", "built-in"},
+        {"power", "own"},
+        {"output", "32-bit float"},
+        {"output", "8-bit code"},
+        {"sum", "kahan"},
+        {"sum", "plain"},
+        {"samples", "1 per pixel"},
+        {"samples", "4 per pixel"},
+        {"sampler", "sobol, 4 per pixel"},
+        {"sampler", "independent, 4 per pixel"},
+        {"together", "exact, 4 per pixel"},
     };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) row_of(f, wanted[i][0], wanted[i][1]);
     uint32_t count, skipped_count, bases = 0;
@@ -251,6 +271,26 @@ static void blank_pictures(char *text) {
         for (char *data = at + 7; *data && *data != '"'; data++) *data = '.';
 }
 
+// Blanks the name of SVG's elements, which looks like an address, and says how often it stood there.
+static size_t blank_namespaces(char *text) {
+    static const char name[] = "xmlns=\"http://www.w3.org/2000/svg\"";
+    size_t count = 0;
+    for (char *at = text; (at = strstr(at, name)); count++) memset(at + 7, '.', sizeof name - 9);
+    return count;
+}
+
+// Whether each chart, cut out of the page, is a file by itself: in order, and with its colours.
+static void assert_charts_stand_alone(const char *page) {
+    for (const char *at = page; (at = strstr(at, "<svg")); at++) {
+        const char *end = strstr(at, "</svg>");
+        assert_non_null(end);
+        char *chart = strndup(at, (size_t)(end - at) + 6);
+        assert_true(is_well_formed(chart));
+        assert_non_null(strstr(chart, "--paper:"));
+        free(chart);
+    }
+}
+
 static void the_report_is_complete_in_itself(void **state) {
     struct fixture *f = *state;
     if (!f->device) skip();
@@ -262,6 +302,8 @@ static void the_report_is_complete_in_itself(void **state) {
     uint32_t tiers = gn_device_info(f->device)->has_fp64 ? 4 : 3;
     assert_int_equal(occurrences(page.data, "src=\"data:image/png;base64,iVBORw0KGgo"), 2 * tiers + 2 + 5); // and scale, reference, changes
     blank_pictures(page.data);
+    assert_charts_stand_alone(page.data);
+    assert_int_equal(blank_namespaces(page.data), 2);
     assert_null(strstr(page.data, "http"));
     assert_null(strstr(page.data, "<script"));
     assert_null(strstr(page.data, "\"nan"));
@@ -308,8 +350,8 @@ static void numbers_are_for_people(void **state) {
         double value;
         const char *text;
     } rows[] = {
-        {0, "0"},         {0.0612, "0.0612"},      {0.612, "0.612"},           {1, "1.00"},        {61.56, "61.6"},     {612, "612"},
-        {1240, "1 240"},  {123456, "123 456"},     {4.474e-7, "4.47·10⁻⁷"},    {2e12, "2.00·10¹²"}, {INFINITY, "∞"},    {NAN, "not a number"},
+        {0, "0"},        {0.0612, "0.0612"},  {0.612, "0.612"},        {1, "1.00"},         {61.56, "61.6"}, {612, "612"},
+        {1240, "1 240"}, {123456, "123 456"}, {4.474e-7, "4.47·10⁻⁷"}, {2e12, "2.00·10¹²"}, {INFINITY, "∞"}, {NAN, "not a number"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char *text = NULL;
@@ -337,11 +379,15 @@ static void text_is_escaped(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_front_is_what_nothing_beats), cmocka_unit_test(a_lattice_is_every_third_pixel),
-        cmocka_unit_test(every_axis_is_there),             cmocka_unit_test(errors_are_where_they_belong),
-        cmocka_unit_test(faults_are_values),               cmocka_unit_test(the_report_is_complete_in_itself),
+        cmocka_unit_test(the_front_is_what_nothing_beats),
+        cmocka_unit_test(a_lattice_is_every_third_pixel),
+        cmocka_unit_test(every_axis_is_there),
+        cmocka_unit_test(errors_are_where_they_belong),
+        cmocka_unit_test(faults_are_values),
+        cmocka_unit_test(the_report_is_complete_in_itself),
         cmocka_unit_test(the_program_tells_rows),
-        cmocka_unit_test(what_is_not_well_formed_is_noticed), cmocka_unit_test(numbers_are_for_people),
+        cmocka_unit_test(what_is_not_well_formed_is_noticed),
+        cmocka_unit_test(numbers_are_for_people),
         cmocka_unit_test(text_is_escaped),
     };
     return cmocka_run_group_tests_name("cost", tests, open_all, close_all);

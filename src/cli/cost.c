@@ -118,8 +118,9 @@ static void print(const struct gn_cost *cost) {
         print_row(&rows[i], base_of(rows, count, rows[i].axis));
     }
     printf("\n* on the Pareto front of its kind of error: nothing else is as fast and as close, and better in one of the two.\n"
-           "Of %" PRIu32 " × %" PRIu32 " pixels every %" PRIu32 ". in both directions (sampling: every %" PRIu32 "., reference with %" PRIu32
-           " samples); %" PRIu32 " rounds.\nWRONG/M: wrong decisions per million of %" PRIu64 " camera rays and rays to lights; T ULP: the "
+           "Of %" PRIu32 " × %" PRIu32 " pixels every %" PRIu32 ". in both directions (sampling: every %" PRIu32
+           "., reference with %" PRIu32 " samples); %" PRIu32 " rounds.\nWRONG/M: wrong decisions per million of %" PRIu64
+           " camera rays and rays to lights; T ULP: the "
            "largest error of t.\n",
            summary.width, summary.height, summary.stride[0], summary.stride[1], summary.reference_spp, summary.rounds, summary.rays);
     for (uint32_t i = 0; i < skipped_count; i++)
@@ -152,7 +153,7 @@ static bool report(struct run *run, const struct gn_cost *cost, const struct gn_
     bool done = true;
     if (run->settings.json) {
         done = run_result(run, as_json(run, cost, device, findings));
-    } else if (!run->settings.quiet) {
+    } else {
         progress_clear(&run->view);
         print(cost);
         printf("\n");

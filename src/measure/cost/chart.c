@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "measure/cost/html.h"
+#include "measure/cost/style.h"
 
 #define WIDTH 760.0
 #define HEIGHT 430.0
@@ -13,8 +14,9 @@
 #define BOTTOM 46.0
 #define ZERO_BAND 30.0 // below the axis, for errors of 0
 #define DOT 5.0
-#define GLYPH 6.3  // mean width of a character of a label
-#define LINE 14.0  // height of one
+#define GLYPH 6.3 // mean width of a character of a label
+#define LINE 14.0 // height of one
+#define GAP 3.0   // between labels
 
 struct box {
     double x0, y0, x1, y1;
@@ -185,23 +187,26 @@ static size_t text_length(const char *text) {
 
 // Beside its dot, at the first place around it that is free, else at the freest.
 static void draw_label(struct plot *plot, const struct chart_point *point) {
-    static const double places[][2] = {{1, 0},       {0.4, -0.8},  {0.4, 0.9},  {-1, 0},      {-0.4, -0.8}, {-0.4, 0.9},
-                                       {0, -1.1},    {0, 1.2},     {0.8, -1.9}, {0.8, 2},     {-0.8, -1.9}, {-0.8, 2},
-                                       {0.8, -3},    {0.8, 3.1},   {-0.8, -3},  {-0.8, 3.1}};
+    static const double places[][2] = {{1, 0},    {0.4, -0.8}, {0.4, 0.9},  {-1, 0},    {-0.4, -0.8}, {-0.4, 0.9},
+                                       {0, -1.1}, {0, 1.2},    {0.8, -1.9}, {0.8, 2},   {-0.8, -1.9}, {-0.8, 2},
+                                       {0.8, -3}, {0.8, 3.1},  {-0.8, -3},  {-0.8, 3.1}};
     double x = x_of(plot, point->time), y = y_of(plot, point->error), width = GLYPH * (double)text_length(point->label), best = INFINITY;
     struct box chosen = {0, 0, 0, 0};
     for (size_t i = 0; i < sizeof places / sizeof *places && best > 0; i++) {
         double across = places[i][0], left = x + across * (DOT + 4) - (across > 0 ? 0 : across < 0 ? width : 0.5 * width);
         double middle = y + places[i][1] * LINE;
-        struct box box = {left, middle - 0.5 * LINE, left + width, middle + 0.5 * LINE};
+        struct box box = {left - GAP, middle - 0.5 * LINE, left + width + GAP, middle + 0.5 * LINE};
         double bad = badness(plot, &box);
         if (bad < best) best = bad, chosen = box;
     }
     double middle = 0.5 * (chosen.y0 + chosen.y1);
     if (fabs(middle - y) > 1.5 * LINE)
-        fprintf(plot->to, "<path class=\"lead\" d=\"M%.1f %.1fL%.1f %.1f\" />", x, y, x < chosen.x0 ? chosen.x0 : x > chosen.x1 ? chosen.x1 : x,
+        fprintf(plot->to, "<path class=\"lead\" d=\"M%.1f %.1fL%.1f %.1f\" />", x, y,
+                x < chosen.x0   ? chosen.x0
+                : x > chosen.x1 ? chosen.x1
+                                : x,
                 middle < y ? chosen.y1 : chosen.y0);
-    fprintf(plot->to, "<text class=\"label c%u\" x=\"%.1f\" y=\"%.1f\">", point->colour, chosen.x0, middle + 4);
+    fprintf(plot->to, "<text class=\"label c%u\" x=\"%.1f\" y=\"%.1f\">", point->label_colour, chosen.x0 + GAP, middle + 4);
     html_text(plot->to, point->label);
     fputs("</text>\n", plot->to);
     plot->taken[plot->taken_count++] = chosen;
@@ -211,9 +216,9 @@ void chart_write(FILE *to, const struct chart *chart) {
     struct plot plot = {.to = to, .chart = chart};
     if (chart->count == 0) return;
     find_ranges(&plot);
-    fprintf(to, "<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", WIDTH, HEIGHT);
+    fprintf(to, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", WIDTH, HEIGHT);
     html_text(to, chart->title);
-    fputs("\">\n", to);
+    fprintf(to, "\">\n<style>\n%s</style>\n", chart_style);
     draw_time_axis(&plot);
     draw_error_axis(&plot);
     draw_level(&plot);

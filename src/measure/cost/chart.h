@@ -13,9 +13,10 @@ struct chart_point {
     double time, low, high; // ms; low to high is drawn as a line
     double error;           // 0 stands on a line of its own below the axis
     uint32_t colour;        // class "c0", "c1", …
+    uint32_t label_colour;  // likewise
     bool hollow, front;
-    char label[48];         // beside it [none]
-    char title[96];         // said when the pointer is over it
+    char label[48]; // beside it [none]
+    char title[96]; // said when the pointer is over it
 };
 
 struct chart {
@@ -27,7 +28,7 @@ struct chart {
     const char *level_label; // what it is
 };
 
-// Writes <svg>…</svg>; nothing where there is no point.
+// Writes <svg>…</svg>, which is a file of its own, too, if it is cut out; nothing where there is no point.
 void chart_write(FILE *to, const struct chart *chart);
 
 #endif

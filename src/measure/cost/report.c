@@ -17,7 +17,7 @@ static void write_head(struct page *page) {
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>What accuracy costs: ",
           page->to);
     html_text(page->to, page->place->scene);
-    fprintf(page->to, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n", cost_style);
+    fprintf(page->to, "</title>\n<style>\n%s%s</style>\n</head>\n<body>\n<main>\n", chart_style, cost_style);
 }
 
 // "6 320 triangles · ", nothing of which there are none.
@@ -84,7 +84,8 @@ static void add_point(struct page *page, struct chart *chart, uint32_t number, u
     const struct cost_run *run = &page->cost->runs[number];
     if (chart->count == CHART_MOST_POINTS) return;
     struct chart_point *point = &chart->points[chart->count++];
-    *point = (struct chart_point){.time = run->median, .low = run->low, .high = run->high, .error = run->rmse, .colour = colour};
+    *point = (struct chart_point){
+        .time = run->median, .low = run->low, .high = run->high, .error = run->rmse, .colour = colour, .label_colour = colour};
     snprintf(point->label, sizeof point->label, "%s", label);
     snprintf(point->title, sizeof point->title, "%s: %.4g ms, RMSE %.3g", title, run->median, run->rmse);
     for (uint32_t i = 0; i < page->cost->row_count; i++)
@@ -136,7 +137,9 @@ static void draw_sampling(struct page *page) {
         for (uint32_t rung = 0; rung < cost->rungs; rung++)
             if (!independent && slowest[rung] == i) snprintf(label, sizeof label, "%u per pixel", config->spp);
         add_point(page, &chart, row->run, config->tier, label, row->setting);
-        if (chart.count > 0) chart.points[chart.count - 1].hollow = independent;
+        struct chart_point *point = &chart.points[chart.count - 1];
+        point->hollow = independent;
+        point->label_colour = PAGE_REST_COLOUR;
     }
     chart_write(page->to, &chart);
 }
@@ -157,7 +160,8 @@ static void write_key(struct page *page, bool independent) {
 
 static void write_arithmetic(struct page *page) {
     static const char *const axes[] = {"tier", "offset", "normalize", "power", "output"};
-    fputs("<h2>Arithmetic</h2>\n<p>One ray through the centre of each pixel, the same on the device and in the reference: whatever differs is "
+    fputs("<h2>Arithmetic</h2>\n<p>One ray through the centre of each pixel, the same on the device and in the reference: whatever differs "
+          "is "
           "arithmetic. Lower is closer, left is faster; the line is the Pareto front, below which nothing was found.</p>\n<figure>",
           page->to);
     write_key(page, false);
@@ -169,30 +173,37 @@ static void write_arithmetic(struct page *page) {
 static void write_sampling(struct page *page) {
     static const char *const axes[] = {"samples", "sampler", "sum", "together"};
     fprintf(page->to,
-            "<h2>Samples</h2>\n<p>The same against a picture with %u samples per pixel, at other places: the error is that of sampling, too. Where the "
+            "<h2>Samples</h2>\n<p>The same against a picture with %u samples per pixel, at other places: the error is that of sampling, "
+            "too. Where the "
             "curves of the tiers lie on each other, a more accurate tier buys nothing that one sees.</p>\n<figure>",
             page->cost->targets[COST_SAMPLES].spp);
     write_key(page, true);
     draw_sampling(page);
     fputs("</figure>\n", page->to);
     page_table(page, axes, sizeof axes / sizeof *axes);
-    fprintf(page->to, "<p class=\"note\">The rows of <b>sum</b> have the reference's own %u samples, so that nothing but the sum is in error.</p>\n",
+    fprintf(page->to,
+            "<p class=\"note\">The rows of <b>sum</b> have the reference's own %u samples, so that nothing but the sum is in error.</p>\n",
             page->cost->targets[COST_SAMPLES].spp);
 }
 
 static void write_method(struct page *page) {
     const struct cost *cost = page->cost;
     const struct cost_target *targets = cost->targets;
-    fputs("<h2>How it was measured</h2>\n<p>Times are those of the device's work, compilation and transfers aside: the median of ", page->to);
-    fprintf(page->to,
-            "%u rounds, in which all settings take turns, with the quartiles beside it. Rendered was every %u. pixel of the picture in both "
-            "directions, for the errors of sampling every %u.; the reference is fp64 on the CPU with exact decisions, and took %.1f and %.1f s. ",
-            cost->rounds, targets[COST_CENTRES].lattice.stride, targets[COST_SAMPLES].lattice.stride, 1e-3 * targets[COST_CENTRES].ms,
-            1e-3 * targets[COST_SAMPLES].ms);
+    fputs("<h2>How it was measured</h2>\n<p>Times are those of the device's work, compilation and transfers aside: the median of ",
+          page->to);
+    fprintf(
+        page->to,
+        "%u rounds, in which all settings take turns, with the quartiles beside it. Rendered was every %u. pixel of the picture in both "
+        "directions, for the errors of sampling every %u.; the reference is fp64 on the CPU with exact decisions, and took %.1f and %.1f "
+        "s. ",
+        cost->rounds, targets[COST_CENTRES].lattice.stride, targets[COST_SAMPLES].lattice.stride, 1e-3 * targets[COST_CENTRES].ms,
+        1e-3 * targets[COST_SAMPLES].ms);
     fputs("Wrong decisions are those of the tier about ", page->to);
     html_count(page->to, cost->decisions[TIER_ROBUST].rays);
-    fputs(" camera rays and rays to lights; the ulp of t are over the camera rays that hit the right primitive. RMSE is over linear light, FLIP "
-          "(Andersson et al. 2020) over what a screen shows. ● marks the Pareto front: nothing else with the same kind of error is as fast and as "
+    fputs(" camera rays and rays to lights; the ulp of t are over the camera rays that hit the right primitive. RMSE is over linear light, "
+          "FLIP "
+          "(Andersson et al. 2020) over what a screen shows. ● marks the Pareto front: nothing else with the same kind of error is as fast "
+          "and as "
           "close, and better in one of the two by more than 5 %, the noise.</p>\n",
           page->to);
     for (uint32_t i = 0; i < cost->skipped_count; i++) {
