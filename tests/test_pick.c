@@ -82,19 +82,17 @@ static void the_best_is_picked(void **state) {
         bool met;
         uint32_t best;
     } rows[] = {
-        {0.2, 0, true, 1},    // the fastest that is close enough
-        {0.05, 0, true, 3},   // only one is
-        {0.001, 0, false, 4}, // none: the closest
-        {0, 3, true, 1},      // the closest in time; of equal ones the faster
-        {0, 100, true, 4},
-        {0, 0.5, false, 0},   // none: the fastest
-        {0.2, 1.5, false, 0}, // none has both: the closest in time
-        {0.05, 5, true, 3},
-        {0.04, 5, false, 3},
+        {0.2, 0, true, 1},                        // the fastest that is close enough
+        {0.05, 0, true, 3},                       // only one is
+        {0.001, 0, false, 4},                     // none: the closest
+        {0, 3, true, 1},                          // the closest in time; of equal ones the faster
+        {0, 100, true, 4},    {0, 0.5, false, 0}, // none: the fastest
+        {0.2, 1.5, false, 0},                     // none has both: the closest in time
+        {0.05, 5, true, 3},   {0.04, 5, false, 3},
     };
-    static const struct pick_candidate candidates[] = {
-        {.error = 0.5, .seconds = 1}, {.error = 0.1, .seconds = 2}, {.error = 0.1, .seconds = 3}, {.error = 0.05, .seconds = 4},
-        {.error = 0.01, .seconds = 8}, {.error = NAN, .seconds = 0.1}};
+    static const struct pick_candidate candidates[] = {{.error = 0.5, .seconds = 1},  {.error = 0.1, .seconds = 2},
+                                                       {.error = 0.1, .seconds = 3},  {.error = 0.05, .seconds = 4},
+                                                       {.error = 0.01, .seconds = 8}, {.error = NAN, .seconds = 0.1}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         bool met;
         uint32_t best = pick_best(candidates, 5, rows[i].max_error, rows[i].max_seconds, &met);
@@ -204,6 +202,9 @@ static void faults_are_values(void **state) {
     assert_int_equal(f->error.status, GN_USAGE);
     if (!f->device) return;
     assert_false(gn_pick(f->device, f->scenes[0], &(struct gn_pick_params){.max_error = 0}, &pick, &f->error));
+    assert_int_equal(f->error.status, GN_USAGE);
+    const struct gn_pick_params many = {.render = {.spp = 100000}, .max_error = 0.1};
+    assert_false(gn_pick(f->device, f->scenes[0], &many, &pick, &f->error)); // more samples than are tried
     assert_int_equal(f->error.status, GN_USAGE);
     assert_string_equal(gn_accuracy_name(GN_EXACT), "exact");
     assert_null(gn_accuracy_name(GN_ACCURACY_COUNT));

@@ -6,17 +6,17 @@
 #include "base/clock.h"
 #include "render/render.h"
 
-#define SAMPLE_PIXELS 1024      // on which errors are measured
-#define TIME_PIXELS 16384       // on which times are: so many that the fixed cost of a dispatch does not matter
-#define MOST_SPP (1u << 16)     // tried
-#define MORE_SAMPLES 4          // of the reference, for one of a candidate
-#define LEAST_SECONDS 4.0       // that a reference may always take
-#define REFERENCE_SHARE 0.2     // and as much of what rendering would
-#define MOST_SECONDS 30.0       // up to this
-#define EXTRAPOLATED 3          // powers of two beyond those measured
-#define PICKING_SHARE 0.3       // of the time there is: no tier is tried after that
-#define RENDERING_SHARE 0.75    // of the time left after picking: the rest is for checking and writing
-#define OTHER_SEED 0x9e3779b9u  // samples at other places
+#define SAMPLE_PIXELS 1024     // on which errors are measured
+#define TIME_PIXELS 16384      // on which times are: so many that the fixed cost of a dispatch does not matter
+#define MOST_SPP (1u << 16)    // tried
+#define MORE_SAMPLES 4         // of the reference, for one of a candidate
+#define LEAST_SECONDS 4.0      // that a reference may always take
+#define REFERENCE_SHARE 0.2    // and as much of what rendering would
+#define MOST_SECONDS 30.0      // up to this
+#define EXTRAPOLATED 3         // powers of two beyond those measured
+#define PICKING_SHARE 0.3      // of the time there is: no tier is tried after that
+#define RENDERING_SHARE 0.75   // of the time left after picking: the rest is for checking and writing
+#define OTHER_SEED 0x9e3779b9u // samples at other places
 
 static const char *const TIER_NAMES[] = {
 #define X(number, id, name, text) [TIER_##id] = name,
@@ -29,10 +29,10 @@ struct picking {
     struct device *device;
     const struct pick_params *params;
     struct pick *out;
-    struct sample sample;        // for errors
-    struct image reference;      // of the sample
-    uint32_t reference_spp;      // 0: there is none yet
-    double speed[TIER_COUNT];    // seconds for one sample of one pixel; 0: not tried
+    struct sample sample;     // for errors
+    struct image reference;   // of the sample
+    uint32_t reference_spp;   // 0: there is none yet
+    double speed[TIER_COUNT]; // seconds for one sample of one pixel; 0: not tried
     double started;
 };
 
@@ -98,7 +98,8 @@ static bool reach(struct picking *p, uint32_t spp, bool *enough) {
     *enough = true;
     if (same ? p->reference_spp == spp : p->reference_spp >= MORE_SAMPLES * spp) return true;
     uint32_t wanted = same ? spp : MORE_SAMPLES * MORE_SAMPLES * spp; // serves for the next candidates, too
-    double rendering = whole_pixels(p) * spp * fastest_speed(p), limit = fmin(fmax(LEAST_SECONDS, REFERENCE_SHARE * rendering), MOST_SECONDS);
+    double rendering = whole_pixels(p) * spp * fastest_speed(p),
+           limit = fmin(fmax(LEAST_SECONDS, REFERENCE_SHARE * rendering), MOST_SECONDS);
     if (p->params->max_seconds > 0) limit = fmin(limit, 0.5 * PICKING_SHARE * p->params->max_seconds);
     double one = sample_pixels(&p->sample) * p->out->reference_speed;
     if (wanted * one > limit && !same) wanted = MORE_SAMPLES * spp;
@@ -197,12 +198,16 @@ static void explain(struct pick *out, const struct pick_params *params, double l
     int used = 0;
     if (params->max_error > 0) used = snprintf(asked, sizeof asked, "an error of %.3g", params->max_error);
     if (params->max_seconds > 0)
-        snprintf(asked + used, sizeof asked - (size_t)used, "%s%.3g s, of which %.3g for rendering", used ? " within " : "", params->max_seconds,
-                 left);
+        snprintf(asked + used, sizeof asked - (size_t)used, "%s%.3g s, of which %.3g for rendering", used ? " within " : "",
+                 params->max_seconds, left);
     const char *samples = picked->spp == 1 ? "" : "s";
     snprintf(what, sizeof what, "%s with %u sample%s per pixel", TIER_NAMES[picked->tier], picked->spp, samples);
-    if (!out->met)
-        snprintf(out->because, sizeof out->because, "none of %u settings has %s; %s is what there was time for", out->count, asked, what);
+    if (!out->met && params->max_error > 0)
+        snprintf(out->because, sizeof out->because, "no setting of %u tried has %s; %s is what there was time for", out->count, asked,
+                 what);
+    else if (!out->met)
+        snprintf(out->because, sizeof out->because,
+                 "no setting of %u tried renders in the time that choosing left, %.3g s; %s is the fastest", out->count, left, what);
     else if (params->max_error > 0)
         snprintf(out->because, sizeof out->because, "of %u settings %s is the fastest with %s", out->count, what, asked);
     else
@@ -234,6 +239,8 @@ bool pick_setting(struct pick *out, struct context *ctx, struct device *device, 
     *out = (struct pick){.count = 0};
     struct picking p = {.ctx = ctx, .device = device, .params = params, .out = out, .sample = params->what, .started = clock_seconds()};
     p.sample.lattice = sample_lattice(p.sample.width, p.sample.height, SAMPLE_PIXELS);
+    if (params->spp > MOST_SPP)
+        return fail(ctx, GN_USAGE, "%u samples per pixel are too many to pick a setting for: at most %u are tried", params->spp, MOST_SPP);
     bool done = time_tiers(&p) && try_reference(&p) && climb(&p);
     image_finish(&p.reference);
     if (!done) return false;
@@ -243,8 +250,8 @@ bool pick_setting(struct pick *out, struct context *ctx, struct device *device, 
 
 // -------------------------------------------------------------------------------------------------------------- checking
 
-bool pick_check(double *error, uint64_t *pixels, struct context *ctx, const struct pick_params *params, uint32_t spp, double reference_speed,
-                const struct image *picture, double seconds) {
+bool pick_check(double *error, uint64_t *pixels, struct context *ctx, const struct pick_params *params, uint32_t spp,
+                double reference_speed, const struct image *picture, double seconds) {
     struct sample sample = params->what;
     uint32_t reference_spp = params->spp ? spp : MORE_SAMPLES * spp;
     double fit = seconds / (reference_speed * reference_spp);
