@@ -81,17 +81,26 @@ static void print_all(const struct run *run, const struct gn_stress *stress) {
     for (uint32_t i = 0; i < count; i += tiers) print_row(run, &results[i], tiers);
 }
 
+// What is the matter with a result: too many wrong ones, or what its note says.
+static bool fail_of(struct run *run, const struct gn_stress_result *result) {
+    char wrong[96] = "";
+    if (result->wrong > result->allowed)
+        snprintf(wrong, sizeof wrong, " %" PRIu64 " of %" PRIu64 " wrong, %" PRIu64 " may be%s", result->wrong, result->rays,
+                 result->allowed, *result->note ? ";" : "");
+    return run_fail(run, GN_CHECK_FAILED, "%s at %s:%s%s%s", result->id, result->accuracy, wrong, *result->note ? " " : "", result->note);
+}
+
 static bool judge(struct run *run, const struct gn_stress *stress) {
     uint32_t count, tiers, waiting = 0;
     const struct gn_stress_result *results = gn_stress_results(stress, &count, &tiers);
     for (uint32_t i = 0; i < count; i++) {
         const struct gn_stress_result *result = &results[i];
-        if (!result->pass)
-            return run_fail(run, GN_CHECK_FAILED, "%s at %s: %" PRIu64 " of %" PRIu64 " wrong, %" PRIu64 " may be%s%s", result->id,
-                            result->accuracy, result->wrong, result->rays, result->allowed, *result->note ? "; " : "", result->note);
+        if (!result->pass) return fail_of(run, result);
         waiting += i % tiers == 0 && result->waits;
     }
-    run_say(run, "%" PRIu32 " cases as they should be, %" PRIu32 " waiting; %.1f s", count / tiers - waiting, waiting, 1e-3 * run_ms(run));
+    uint32_t done = count / tiers - waiting;
+    run_say(run, "%" PRIu32 " case%s as %s should be, %" PRIu32 " waiting; %.1f s", done, done == 1 ? "" : "s", done == 1 ? "it" : "they",
+            waiting, 1e-3 * run_ms(run));
     return true;
 }
 

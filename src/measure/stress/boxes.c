@@ -160,6 +160,8 @@ static bool enters(struct adversary *adversary, const struct box_case *c) {
     return adversary_box(adversary, c->min, c->max, c->o, c->d, c->tmin, c->tmax);
 }
 
+#define ENOUGH_TO_LOSE 500u // boxes, for the control
+
 // B03: the box test with arithmetic as bad as Vulkan allows, on all the kinds of boxes above. Control: without its pad it must lose
 // some.
 bool boxes_perturbed(struct stress *s) {
@@ -181,7 +183,7 @@ bool boxes_perturbed(struct stress *s) {
         judge(&tally, &c, &touched, &entered, 1);
         lost += touched && !enters(&unpadded, &c);
     }
-    if (lost == 0) tally_wrong(&tally, "control: without its pad the box test loses nothing");
+    if (lost == 0 && s->rays >= ENOUGH_TO_LOSE) tally_wrong(&tally, "control: without its pad the box test loses nothing");
     tally_every(s, &tally);
     return true;
 }

@@ -16,6 +16,8 @@ static const char *const tier_names[TIER_COUNT] = {
 #undef X
 };
 
+#define COPIES 8 // shots at one question: a ray and its variants that are not fuzzed
+
 uint32_t stress_row_count(void) { return row_count; }
 const char *stress_row_id(uint32_t row) { return row < row_count ? rows[row].id : NULL; }
 
@@ -34,12 +36,12 @@ void tally_every(struct stress *s, const struct tally *tally) {
         if (s->judged[tier]) s->tally[tier] = *tally;
 }
 
-// How many of `count` may be wrong at `per_million`: the mean and four standard deviations, and two for good measure; none where none
-// may.
+// How many of `count` may be wrong at `per_million`: the mean, four standard deviations of as many rays as there are that have nothing
+// to do with each other, and one such for good measure; none where none may.
 static uint64_t allowance(uint32_t per_million, uint64_t count) {
     if (per_million == 0) return 0;
     double mean = 1e-6 * per_million * (double)count;
-    return (uint64_t)(mean + 4 * sqrt(mean) + 2);
+    return (uint64_t)fmin(mean + 4 * sqrt(COPIES * mean) + COPIES, (double)count);
 }
 
 // --------------------------------------------------------------------------------------------------------------- one row
