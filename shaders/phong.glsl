@@ -22,11 +22,4 @@ real3 phong_reflect(phong_material m, real3 n, real3 l, real3 v, bool with_diffu
     return cos_l > 0.0 ? sum : real3(0.0);
 }
 
-// What arrives of a light's intensity: all of it, or the intensity over distance² where falloff is 1; nothing at the light itself. Divided twice, so that
-// only a result that is too large or too small over- or underflows.
-real3 light_arriving(real3 intensity, real falloff, real distance) {
-    if (falloff == 0.0) return intensity;
-    return distance > 0.0 ? (intensity / distance) / distance : real3(0.0);
-}
-
 #endif

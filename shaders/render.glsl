@@ -10,6 +10,7 @@
 #include "constants.glsl"
 #include "film.glsl"
 #include "filter.glsl"
+#include "light.glsl"
 #include "pending.glsl"
 #include "phong.glsl"
 #include "ray.glsl"
@@ -19,7 +20,6 @@
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(push_constant) uniform push { render_args args; };
-layout(set = 0, binding = BINDING_LIGHTS) uniform usamplerBuffer light_words;
 layout(set = 0, binding = BINDING_GLOBALS) uniform usamplerBuffer global_words;
 layout(set = 0, binding = BINDING_CAMERA) uniform usamplerBuffer camera_words;
 layout(set = 0, binding = BINDING_STATUS) buffer status_buffer { status dispatch_status; };
@@ -60,13 +60,13 @@ ray camera_ray(uvec2 pixel, uint number) {
 
 // What light `number` would add at s, seen along -v, if nothing is in its way; and the way to it.
 real3 light_reflect(surface s, phong_material m, real3 v, uint number, out real3 position) {
-    uvec4 w0 = texelFetch(light_words, int(LIGHT_WORDS * number));
-    uvec4 w1 = texelFetch(light_words, int(LIGHT_WORDS * number + 1u));
-    position = real3(uintBitsToFloat(w0.xyz));
+    uvec4 w0 = light_word(number, 0u), w1 = light_word(number, 1u);
+    position = light_xyz(w0);
     real3 way = position - s.p;
     real3 l = normalize_any(way);
     real distance = dot(way, l) * args.corner.w;
-    real3 light = light_arriving(real3(uintBitsToFloat(w1.xyz)), uintBitsToFloat(w0.w), distance);
+    real3 light = light_arriving(light_xyz(w1), uintBitsToFloat(w1.w), distance);
+    if (w0.w != POINT_LIGHT) return real3(0.0);
     return light * phong_reflect(m, s.n, l, v, HAS_DIFFUSE, HAS_SPECULAR);
 }
 

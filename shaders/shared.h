@@ -146,9 +146,26 @@
 #define ALPHA_MODE_OPAQUE 0u
 #define ALPHA_MODE_MASK 1u
 #define ALPHA_MODE_BLEND 2u
-// Light: 2 word4:  position.xyz, falloff (0 none, 1 inverse square)    intensity.rgb, 0
-// Positions are in device units, intensities as the scene has them.
-#define LIGHT_WORDS 2
+// Light: 4 word4. Points and lengths are in device units, intensities and radiances as the scene has them, directions unit.
+//                0                     1                                         2                            3
+//   point        position, kind        intensity, 1 for inverse square else 0
+//   spot         as a point light                                                its axis, 1 - cos outer      0, 0, 0, 1/(cos inner - cos outer)
+//   directional  0, 0, 0, kind         intensity, 0                              the way to it, 0
+//   sphere       center, kind          radiance, object                          radius, 0, 0, 0
+//   triangle     v0, kind              radiance, object                          v1, 0                        v2, 0
+//   rectangle    as a triangle; its fourth corner is v1 + v2 - v0
+//   mesh         0, 0, 0, kind         0, 0, 0, object                           first emitter, count, 0, 0
+#define LIGHT_WORDS 4
+#define ABSENT_LIGHT 0u             // its effect is switched off, or its shape
+#define POINT_LIGHT 1u
+#define DIRECTIONAL_LIGHT 2u
+#define SPOT_LIGHT 3u
+#define SPHERE_LIGHT 4u
+#define TRIANGLE_LIGHT 5u
+#define RECTANGLE_LIGHT 6u
+#define MESH_LIGHT 7u
+// Emitter, a triangle of a mesh light: 4 word4:  v0.xyz, cdf    v1.xyz, object    v2.xyz, primitive    radiance.rgb, probability
+#define EMITTER_WORDS 4
 // Globals: 4 word4:
 //   0: background.rgb, the most rays of a path after the camera's     1: ambient.rgb, the ray from which on paths end by chance
 //   2: fog: albedo.rgb, density per device unit                       3: fog: center.xyz and radius of the ball that it fills; and

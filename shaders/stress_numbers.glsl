@@ -4,6 +4,7 @@
 #define STRESS_NUMBERS_GLSL
 #include "camera.glsl"
 #include "constants.glsl"
+#include "light_point.glsl"
 #include "phong.glsl"
 #include "sampler.glsl"
 #include "stress.glsl"

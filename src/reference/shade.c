@@ -119,6 +119,7 @@ void shade(double color[3], uint64_t *rays, const struct ref_world *world, const
     for (uint32_t i = 0; i < scene->light_count; i++) {
         const struct scene_light *light = &scene->lights[i];
         double to_light[3], sent[3];
+        if (light->type != LIGHT_POINT) continue;
         for (int k = 0; k < 3; k++) to_light[k] = snap(light->position[k] - surface->p[k]);
         if (!unshadowed(sent, world, surface, light, to_light) || is_shadowed(rays, world, surface, to_light)) continue;
         for (int k = 0; k < 3; k++) color[k] += sent[k];

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "base/threads.h"
+#include "render/upload_lights.h"
+#include "scene/area_lights.h"
 
 // What the fill functions need. `inner` numbers the inner nodes, `slot` the primitives of each kind in leaf order.
 struct upload {
@@ -16,6 +18,7 @@ struct upload {
     uint32_t *inner;        // by node: inner nodes before it
     uint32_t *slot;         // by position in bvh->order: primitives of the same kind before it; NULL where there is only one kind
     uint32_t inner_count;
+    struct light_table lights; // only where there is shading
 };
 
 static uint32_t float_bits(float value) {
@@ -94,6 +97,7 @@ static bool upload_init(struct upload *u, struct context *ctx, const struct scen
 }
 
 static void upload_finish(struct upload *u) {
+    light_table_finish(&u->lights);
     free(u->inner);
     free(u->slot);
 }
@@ -291,10 +295,12 @@ static const float *uvs_of(const struct scene_mesh *mesh) { return mesh->uvs; }
 static bool fill_normals(void *data, void *to, uint64_t offset, uint64_t size) { return fill_attribute(data, to, offset, size, 3, normals_of); }
 static bool fill_uvs(void *data, void *to, uint64_t offset, uint64_t size) { return fill_attribute(data, to, offset, size, 2, uvs_of); }
 
-static uint32_t light_of(const struct scene *scene, uint32_t object) {
-    for (uint32_t i = 0; i < scene->light_count; i++)
-        if (scene->lights[i].type == LIGHT_AREA && scene->lights[i].shape == object) return i;
-    return NO_LIGHT;
+// Lights that any effect reads.
+static uint32_t light_count(const struct upload *u) { return u->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR) ? u->scene->light_count : 0; }
+
+static uint32_t light_of(const struct upload *u, uint32_t object) {
+    const uint32_t light = scene_light_of(u->scene, object);
+    return light < light_count(u) && u->lights.kind[light] != ABSENT_LIGHT ? light : NO_LIGHT;
 }
 
 static bool fill_objects(void *data, void *to, uint64_t offset, uint64_t size) {
@@ -303,8 +309,7 @@ static bool fill_objects(void *data, void *to, uint64_t offset, uint64_t size) {
     uint32_t triangles = 0;
     for (uint32_t i = 0; i < u->scene->shape_count && i < end; i++) {
         bool attributes = has_attributes(u, &u->scene->shapes[i]);
-        uint32_t light = u->effects & EFFECT_SOFT_SHADOWS ? light_of(u->scene, i) : NO_LIGHT;
-        if (i >= begin) ((struct word4 *)to)[i - begin] = (struct word4){{attributes ? triangles : NO_ATTRIBUTES, light, 0, 0}};
+        if (i >= begin) ((struct word4 *)to)[i - begin] = (struct word4){{attributes ? triangles : NO_ATTRIBUTES, light_of(u, i), 0, 0}};
         if (attributes) triangles += u->scene->shapes[i].mesh.triangle_count;
     }
     return true;
@@ -340,14 +345,21 @@ static bool fill_materials(void *data, void *to, uint64_t offset, uint64_t size)
     return true;
 }
 
+static struct light_frame light_frame_of(const struct upload *u) {
+    return (struct light_frame){u->scene, &u->lights, {u->base[0], u->base[1], u->base[2]}, u->scale};
+}
+
 static bool fill_lights(void *data, void *to, uint64_t offset, uint64_t size) {
-    const struct upload *u = data;
-    struct word4 *word = to;
-    const struct scene_light *l = u->scene->lights + offset / (LIGHT_WORDS * sizeof *word);
-    for (uint64_t left = size / (LIGHT_WORDS * sizeof *word); left; left--, l++, word += LIGHT_WORDS) {
-        word[0] = point_of(u, l->position, float_bits(l->falloff == FALLOFF_INVERSE_SQUARE ? 1.0f : 0.0f));
-        word[1] = word4_of(l->intensity, 0);
-    }
+    const struct light_frame frame = light_frame_of(data);
+    const uint64_t record = LIGHT_WORDS * sizeof(struct word4);
+    for (uint64_t i = 0; i < size / record; i++) write_light((struct word4 *)to + LIGHT_WORDS * i, &frame, (uint32_t)(offset / record + i));
+    return true;
+}
+
+static bool fill_emitters(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct light_frame frame = light_frame_of(data);
+    const uint64_t record = EMITTER_WORDS * sizeof(struct word4);
+    for (uint64_t i = 0; i < size / record; i++) write_emitter((struct word4 *)to + EMITTER_WORDS * i, &frame, (uint32_t)(offset / record + i));
     return true;
 }
 
@@ -406,13 +418,16 @@ static bool make_shading(struct device_scene *out, struct context *ctx, struct d
     uint64_t triangles, vertices;
     bool normals = u->effects & EFFECT_SMOOTH_NORMALS, uvs = u->effects & EFFECTS_WITH_UVS, objects = normals || uvs || u->effects & EFFECT_SOFT_SHADOWS;
     count_attributes(u, &triangles, &vertices);
-    out->light_count = u->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR) ? u->scene->light_count : 0;
+    out->light_count = light_count(u);
+    if (!light_table_init(&u->lights, ctx, u->scene, u->effects)) return false;
+    const uint32_t emitters = u->lights.first[out->light_count];
     return make(&out->objects, ctx, device, u, "objects", objects ? u->scene->shape_count : 0, OBJECT_WORDS, fill_objects) &&
            make(&out->indices, ctx, device, u, "vertex indices", triangles, 1, fill_indices) &&
            make(&out->normals, ctx, device, u, "normals", normals ? vertices : 0, 1, fill_normals) &&
            make(&out->uvs, ctx, device, u, "texture coordinates", uvs ? vertices : 0, 1, fill_uvs) &&
            make(&out->materials, ctx, device, u, "materials", u->scene->material_count, MATERIAL_WORDS, fill_materials) &&
            make(&out->lights, ctx, device, u, "lights", out->light_count, LIGHT_WORDS, fill_lights) &&
+           make(&out->emitters, ctx, device, u, "triangles that emit", emitters, EMITTER_WORDS, fill_emitters) &&
            make(&out->globals, ctx, device, u, "globals", 1, GLOBAL_WORDS, fill_globals);
 }
 
@@ -439,7 +454,7 @@ bool device_scene_init(struct device_scene *out, struct context *ctx, struct dev
 
 void device_scene_finish(struct device_scene *ds, struct device *device) {
     struct buffer *buffers[] = {&ds->nodes, &ds->triangles, &ds->spheres, &ds->objects, &ds->materials,
-                                &ds->lights, &ds->indices, &ds->normals, &ds->uvs, &ds->globals};
+                                &ds->lights, &ds->indices, &ds->normals, &ds->uvs, &ds->globals, &ds->emitters};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) buffer_finish(buffers[i], device);
     *ds = (struct device_scene){0};
 }
@@ -453,7 +468,7 @@ size_t device_scene_bindings(struct device_scene *ds, struct kernel_binding *bin
         {BINDING_NODES, &ds->nodes, NULL},         {BINDING_TRIANGLES, &ds->triangles, NULL}, {BINDING_SPHERES, &ds->spheres, NULL},
         {BINDING_OBJECTS, &ds->objects, NULL},     {BINDING_MATERIALS, &ds->materials, NULL}, {BINDING_LIGHTS, &ds->lights, NULL},
         {BINDING_INDICES, &ds->indices, NULL},     {BINDING_NORMALS, &ds->normals, NULL},     {BINDING_GLOBALS, &ds->globals, NULL},
-        {BINDING_UVS, &ds->uvs, NULL},
+        {BINDING_UVS, &ds->uvs, NULL},             {BINDING_EMITTERS, &ds->emitters, NULL},
     };
     size_t count = shading ? DEVICE_SCENE_BINDINGS : 3;
     memcpy(bindings, all, count * sizeof *bindings);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "scene/area_lights.h"
 #include "scene/bounds.h"
 #include "scene/build.h"
 #include "scene/mesh.h"
@@ -34,7 +35,7 @@ bool scene_load(struct scene *out, struct context *ctx, const char *path) {
     done = done && progress(ctx, "scene", 0, -1) &&
            (strcmp(suffix, "json") == 0 ? scene_load_json(&build, path) : scene_load_model(&build, path));
     material_table_take(&build.materials, &out->materials, &out->material_count);
-    done = done && progress(ctx, "scene", 1, 0);
+    done = done && scene_area_lights(out, ctx) && progress(ctx, "scene", 1, 0);
     complete_camera(&out->camera);
     if (!done) scene_finish(out);
     return done;

@@ -85,9 +85,9 @@ enum light_falloff { FALLOFF_NONE, FALLOFF_INVERSE_SQUARE };
 // times a radiant intensity. Surfaces that emit are in radiometric units: a diffuse surface under a sky of radiance 1 sends back Kd.
 struct scene_light {
     enum light_type type;
-    float position[3];
+    float position[3];  // of LIGHT_AREA some point within its shape
     float direction[3]; // the way it shines, not necessarily unit: directional, spot
-    float intensity[3]; // with FALLOFF_INVERSE_SQUARE: at distance 1; of LIGHT_AREA unused: the materials say
+    float intensity[3]; // with FALLOFF_INVERSE_SQUARE: at distance 1; of LIGHT_AREA, channel by channel, its largest emission
     enum light_falloff falloff;
     float inner_deg, outer_deg; // half angles of a spot's cone: full light within the inner, none outside the outer one
     uint32_t shape;             // LIGHT_AREA: the shape that emits

@@ -1,7 +1,8 @@
 // In: x, y. Out: power(x, y), what arrives of a light of intensity 1.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "phong.glsl"
+#include "light_point.glsl"
+#include "power.glsl"
 #include "twin.glsl"
 
 void main() {
