@@ -7,6 +7,7 @@
 #define real double
 #define real2 dvec2
 #define real3 dvec3
+#define real4 dvec4
 #define REAL_UNIT 1.1102230246251565e-16lf      // 2^-53
 #define REAL_TINY 6.4e-58lf                     // 2^-190: below it, bits may have been lost on the way (tier_exact.glsl)
 #define REAL_LARGE 1e150lf                      // its square is finite
@@ -17,6 +18,7 @@
 #define real float
 #define real2 vec2
 #define real3 vec3
+#define real4 vec4
 #define REAL_UNIT 5.9604644775390625e-8         // 2^-24
 #define REAL_TINY 7.5231638e-37                 // 2^-120: below it, underflow may have lost bits
 #define REAL_LARGE 1e18

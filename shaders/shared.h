@@ -146,6 +146,13 @@
 #define ALPHA_MODE_OPAQUE 0u
 #define ALPHA_MODE_MASK 1u
 #define ALPHA_MODE_BLEND 2u
+// Texture: 1 word4:  width, height, first word of its texels, wrap of u | wrap of v << 2 | TEXTURE_NEAREST
+// TEXELS begins with what codes mean, 256 floats for sRGB and 256 for linear codes.
+#define TEXTURE_WORDS 1
+#define TEXTURE_REPEATS 0u
+#define TEXTURE_MIRRORS 2u
+#define TEXTURE_NEAREST 16u
+#define TEXEL_CODE_WORDS 128u
 // Light: 4 word4. Points and lengths are in device units, intensities and radiances as the scene has them, directions unit.
 //                0                     1                                         2                            3
 //   point        position, kind        intensity, 1 for inverse square else 0

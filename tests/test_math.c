@@ -1,5 +1,5 @@
 // The functions of math.glsl against MPFR, in fp32 and in fp64: on arguments of every size, and on those next to where the work is divided.
-#include "fixture.h"
+#include "twins.h"
 
 #include <math.h>
 #include <mpfr.h>
@@ -20,16 +20,6 @@ static const double LIMITS[OUT] = {2, 2, 4, 2, 2}; // ulp
 static double given[CASES][IN], got[CASES][OUT];
 
 // --------------------------------------------------------------------------------------------------------------- inputs
-
-static uint64_t random_state;
-
-static uint32_t random_bits(void) {
-    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
-    uint32_t folded = (uint32_t)((random_state >> 18 ^ random_state) >> 27);
-    return folded >> (random_state >> 59) | folded << (-(random_state >> 59) & 31);
-}
-
-static double random_in(double low, double high) { return low + (high - low) * (random_bits() * 0x1p-32 + random_bits() * 0x1p-64); }
 
 // A number of either sign and any size from 2^low to 2^high.
 static double random_size(int low, int high) {
@@ -95,23 +85,12 @@ static double error_in_ulp(double value, int which, const double in[IN], bool fp
     return ulps;
 }
 
-static void run(bool fp64, uint32_t count) {
-    static float in[CASES * IN], out[CASES * OUT];
-    if (fp64) {
-        fixture_run(&(struct fixture_job){FIXTURE_KERNEL(twin_math_fp64), .in = given, .in_bytes = sizeof given[0] * count, .out = got,
-                                          .out_bytes = sizeof got[0] * count, .count = count});
-        return;
-    }
-    for (uint32_t i = 0; i < count * IN; i++) in[i] = (float)given[i / IN][i % IN];
-    fixture_run(&(struct fixture_job){FIXTURE_KERNEL(twin_math), .in = in, .in_bytes = sizeof in[0] * count * IN, .out = out,
-                                      .out_bytes = sizeof out[0] * count * OUT, .count = count});
-    for (uint32_t i = 0; i < count * OUT; i++) got[i / OUT][i % OUT] = out[i];
-}
+static const struct twins MATH = {TWINS(twin_math), .in = IN, .out = OUT};
 
 // Every result within its limit; the control, results that are off by the limit and 2 ulp, is caught.
 static void check_errors(bool fp64) {
     for (int i = 0; i < CASES; i++) make_case(given[i], i, fp64);
-    run(fp64, CASES);
+    twins_run(&MATH, fp64, given[0], got[0], CASES);
     for (int which = 0; which < OUT; which++) {
         double worst = 0;
         int caught = 0;
@@ -185,7 +164,7 @@ static const struct special SPECIALS[] = {
 static void check_specials(bool fp64) {
     uint32_t count = COUNT(SPECIALS);
     for (uint32_t i = 0; i < count; i++) memcpy(given[i], SPECIALS[i].in, sizeof given[i]);
-    run(fp64, count);
+    twins_run(&MATH, fp64, given[0], got[0], count);
     for (uint32_t i = 0; i < count; i++) {
         const struct special *s = &SPECIALS[i];
         if (!(got[i][s->which] == s->right)) fail_msg("fp%d %s is %a", fp64 ? 64 : 32, s->name, got[i][s->which]);
