@@ -101,7 +101,7 @@ static void reasons_name_the_culprit(void **state) {
                                                       "samples are spread over their pixel",
                                                       "the camera is a pinhole",
                                                       "nothing moves",
-                                                      "there are no instances",
+                                                      "no mesh is drawn more than once, and none moves",
                                                       "there are no directional lights",
                                                       "there are no spot lights",
                                                       "no material in use sends out light",

@@ -137,7 +137,11 @@ bool bvh_build(struct bvh *out, struct context *ctx, const struct bvh_box *boxes
     if (count > MOST_PRIMITIVES)
         return fail(ctx, GN_LIMIT, "%" PRIu32 " primitives are more than a BVH can hold (%" PRIu32 ")", count, MOST_PRIMITIVES);
     if (count == 0) return true;
-    struct build build = {.ctx = ctx, .boxes = boxes, .count = count, .workspace.split_at = params->split_at};
+    struct build build = {.ctx = ctx, .boxes = boxes, .count = count};
+    // Between the kinds; before the first single; and halves of BVH_MAX_LEAF = 2³ of them.
+    build.workspace.split_at = params->split_at;
+    build.workspace.single_from = count - params->singles;
+    build.workspace.last_cuts = params->singles ? 5 : 1;
     struct bvh_range root;
     if (!bvh_watch_begin(&build.watch, ctx, count) || !make_records(&build, &root)) goto fail;
     if (!bvh_top_build(&build.top, ctx, &build.workspace, &root, &build.watch) || !make_subtrees(&build)) goto fail;
@@ -156,6 +160,8 @@ fail:
 }
 
 void bvh_finish(struct bvh *bvh) {
+    for (uint32_t i = 0; i < bvh->part_count; i++) bvh_finish(&bvh->parts[i]);
+    free(bvh->parts);
     free(bvh->nodes);
     free(bvh->order);
     *bvh = (struct bvh){0};

@@ -30,10 +30,13 @@ struct bvh {
     uint32_t node_count, primitive_count;
     uint32_t depth;  // edges from the root to the deepest leaf
     double sah_cost; // Σ area over the root's area, 1 × for each inner node and 1 × for each primitive of a leaf; 0 for a flat root
+    struct bvh *parts; // of a scene: the hierarchies of what its instances draw
+    uint32_t part_count;
 };
 
 struct bvh_params {
     uint32_t split_at; // primitives from this number on are of the other kind
+    uint32_t singles;  // the last so many have a leaf each
 };
 
 // Builds over boxes[0 … count): no NaN, min ≤ max, min < +∞, max > -∞. The same boxes give the same tree whatever the number of

@@ -63,6 +63,9 @@ static bool check_leaf(struct check *check, uint32_t number, uint32_t depth) {
     for (uint32_t i = 1; i < node->count; i++)
         if ((check->bvh->order[node->first + i] < split_at) != (check->bvh->order[node->first] < split_at))
             return wrong(check, "leaf %" PRIu32 " holds both kinds", number);
+    for (uint32_t i = 0; i < node->count && node->count > 1; i++)
+        if (check->bvh->order[node->first + i] >= check->bvh->primitive_count - check->params->singles)
+            return wrong(check, "leaf %" PRIu32 " holds a primitive that must have one for itself", number);
     if (!same_box(node, box.min, box.max)) return wrong(check, "the box of leaf %" PRIu32 " is not its primitives'", number);
     check->leaf_primitives += node->count;
     check->cost += bvh_half_area(node->min, node->max) * node->count;

@@ -10,11 +10,11 @@ struct subtree_build {
     struct bvh_bins bins;
 };
 
-// The depth that halving down to leaves takes, and one level more for a last cut between the kinds, must be left to the larger side.
-bool bvh_depth_allows(uint32_t depth, uint32_t count) {
+// The depth that halving down to leaves takes, and the levels of the last cuts, must be left to the larger side.
+bool bvh_depth_allows(const struct bvh_workspace *workspace, uint32_t depth, uint32_t count) {
     uint32_t levels = 0;
     for (uint32_t n = count - 1; n > BVH_MAX_LEAF; n -= n / 2) levels++;
-    return depth + 1 + levels + 1 <= BVH_MAX_DEPTH;
+    return depth + 1 + levels + workspace->last_cuts <= BVH_MAX_DEPTH;
 }
 
 struct bvh_range bvh_range_part(const struct bvh_range *range, int side, uint32_t middle, bool moved) {
@@ -46,12 +46,21 @@ static void split_range(struct bvh_range parts[2], const struct bvh_workspace *w
     }
 }
 
-// Where the second kind begins in a range: at its begin or end when there is only one kind.
-static uint32_t kind_boundary(const struct bvh_workspace *workspace, const struct bvh_range *range) {
+// The first place in a range whose primitive has this number or a higher one.
+static uint32_t find_number(const struct bvh_workspace *workspace, const struct bvh_range *range, uint32_t number) {
     const struct bvh_record *records = workspace->records[range->source];
     uint32_t i = range->begin;
-    while (i < range->end && bvh_record_number(&records[i]) < workspace->split_at) i++;
+    while (i < range->end && bvh_record_number(&records[i]) < number) i++;
     return i;
+}
+
+// Where a set that is small enough for a leaf must be cut all the same; 0: nowhere. *single: a primitive that has a leaf for itself is the reason.
+static uint32_t forced_cut(bool *single, const struct bvh_workspace *workspace, const struct bvh_range *range) {
+    uint32_t kind = find_number(workspace, range, workspace->split_at), first = find_number(workspace, range, workspace->single_from);
+    *single = first < range->end;
+    if (kind > range->begin && kind < range->end) return kind;
+    if (first == range->end) return 0;
+    return first > range->begin ? first : range->begin + bvh_range_size(range) / 2;
 }
 
 // About one bin for four primitives: more would be empty in small sets, which are most of all.
@@ -64,15 +73,19 @@ static bool divide(struct bvh_range parts[2], struct subtree_build *build, const
     if (count == 1) return false;
     struct bvh_grid grid = bvh_grid_make(&range->extent, bins_for(count));
     struct bvh_split split = {.axis = -1};
-    if (bvh_depth_allows(range->depth, count)) {
+    if (bvh_depth_allows(workspace, range->depth, count)) {
         bvh_bins_clear(&build->bins, grid.bins);
         bvh_bins_add(&build->bins, &grid, &workspace->records[range->source][range->begin], count);
         bvh_split_find(&split, &build->bins, grid.bins);
     }
     if (count <= BVH_MAX_LEAF && (split.axis < 0 || area * count <= BVH_NODE_COST * area + split.cost)) {
-        uint32_t boundary = kind_boundary(workspace, range);
-        if (boundary == range->begin || boundary == range->end) return false;
-        cut_range(parts, workspace, range, boundary);
+        bool single;
+        uint32_t cut = forced_cut(&single, workspace, range);
+        if (cut == 0) return false;
+        if (single && split.axis >= 0)
+            split_range(parts, workspace, range, &split, &grid);
+        else
+            cut_range(parts, workspace, range, cut);
     } else if (split.axis < 0) {
         cut_range(parts, workspace, range, range->begin + count / 2);
     } else {

@@ -19,6 +19,8 @@ struct bvh_workspace {
     struct bvh_record *records[2];
     uint32_t *order;   // of the result
     uint32_t split_at; // as in struct bvh_params
+    uint32_t single_from; // primitives from this number on have a leaf each
+    uint32_t last_cuts;   // levels that cuts take where a leaf would do but for what must not share one
 };
 
 // Zeroed is empty.
@@ -39,6 +41,6 @@ static inline uint32_t bvh_range_size(const struct bvh_range *range) { return ra
 struct bvh_range bvh_range_part(const struct bvh_range *range, int side, uint32_t middle, bool moved);
 
 // Whether a node at this depth may be split as unevenly as it may come: halving the larger side suffices after that.
-bool bvh_depth_allows(uint32_t depth, uint32_t count);
+bool bvh_depth_allows(const struct bvh_workspace *workspace, uint32_t depth, uint32_t count);
 
 #endif

@@ -88,7 +88,7 @@ static void large_plan(struct level *level, struct large *large) {
     bvh_bins_clear(&bins, large->grid.bins);
     for (uint32_t i = 0; i < large->chunk_count; i++) bvh_bins_merge(&bins, &chunks[i].bins, large->grid.bins);
     large->split.axis = -1;
-    if (!bvh_depth_allows(large->range.depth, bvh_range_size(&large->range)) || !bvh_split_find(&large->split, &bins, large->grid.bins))
+    if (!bvh_depth_allows(level->workspace, large->range.depth, bvh_range_size(&large->range)) || !bvh_split_find(&large->split, &bins, large->grid.bins))
         return;
     uint32_t left = large->range.begin, right = left + large->split.left_count;
     for (uint32_t i = 0; i < large->chunk_count; i++) {

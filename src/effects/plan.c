@@ -1,6 +1,7 @@
 // The rules: what calls for each effect, and why leaving it out changes no pixel when nothing does.
 #include "effects/plan.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,8 @@ struct facts {
     uint32_t effects;  // that are called for, of those with a lower number
     uint32_t spp;
     uint32_t *used_by; // for each material the first shape that uses it, or NOT_USED
-    uint32_t triangles, spheres;
+    uint64_t triangles;
+    uint32_t spheres;
     uint32_t last_shape; // that is there
 };
 #define NOT_USED UINT32_MAX
@@ -34,8 +36,8 @@ static bool says(char *because, bool on, const char *format, ...) {
 // ------------------------------------------------------------------------------------------------------------------- facts
 
 static bool is_there(const struct facts *facts, uint32_t shape) {
-    const bool sphere = facts->scene->shapes[shape].type == SHAPE_SPHERE;
-    return !(facts->disabled & (sphere ? EFFECT_SPHERES : EFFECT_TRIANGLES));
+    const bool sphere = facts->scene->shapes[shape].type == SHAPE_SPHERE, instance = facts->scene->shapes[shape].instance != 0;
+    return !(facts->disabled & (sphere ? EFFECT_SPHERES : EFFECT_TRIANGLES)) && !(instance && facts->disabled & EFFECT_INSTANCES);
 }
 
 static void note_material(struct facts *facts, uint32_t material, uint32_t shape) {
@@ -51,14 +53,15 @@ static bool facts_init(struct facts *out, struct context *ctx, const struct scen
         const struct scene_shape *shape = &scene->shapes[i];
         if (!is_there(out, i)) continue;
         out->last_shape = i;
+        const struct scene_mesh *mesh = scene_mesh_of(scene, i);
         if (shape->type == SHAPE_SPHERE)
             out->spheres++;
         else
-            out->triangles += shape->mesh.triangle_count;
-        if (!shape->mesh.materials)
+            out->triangles += mesh->triangle_count;
+        if (!mesh->materials || (shape->type == SHAPE_INSTANCE && shape->own_material))
             note_material(out, shape->material, i);
         else
-            for (uint32_t k = 0; k < shape->mesh.triangle_count; k++) note_material(out, shape->mesh.materials[k], i);
+            for (uint32_t k = 0; k < mesh->triangle_count; k++) note_material(out, mesh->materials[k], i);
     }
     return true;
 }
@@ -96,7 +99,7 @@ static bool light_meets(const struct facts *facts, const float *(*color)(const s
 static bool rule_TRIANGLES(const struct facts *facts, char *because) {
     for (uint32_t i = 0; i < facts->scene->shape_count; i++)
         if (is_there(facts, i) && facts->scene->shapes[i].type != SHAPE_SPHERE)
-            return says(because, true, "shape %u and %u triangle%s in all", i, facts->triangles, facts->triangles == 1 ? "" : "s");
+            return says(because, true, "shape %u and %" PRIu64 " triangle%s in all", i, facts->triangles, facts->triangles == 1 ? "" : "s");
     return says(because, false, "there are no triangles");
 }
 
@@ -111,6 +114,7 @@ static bool rule_SPHERES(const struct facts *facts, char *because) {
 // hierarchy, too, which is built for the scene.
 static bool rule_BVH(const struct facts *facts, char *because) {
     const uint32_t triangles = scene_triangle_count(facts->scene), spheres = scene_sphere_count(facts->scene), count = triangles + spheres;
+    if (facts->scene->instance_count) return says(because, true, "%u instance%s", facts->scene->instance_count, facts->scene->instance_count == 1 ? "" : "s");
     if (count > FEW_PRIMITIVES) return says(because, true, "%u primitives", count);
     if (triangles && spheres) return says(because, true, "triangles and spheres");
     return says(because, false, "%u primitive%s: one leaf", count, count == 1 ? "" : "s");
@@ -119,7 +123,7 @@ static bool rule_BVH(const struct facts *facts, char *because) {
 // Without vertex normals the shading normal is the geometric one.
 static bool rule_SMOOTH_NORMALS(const struct facts *facts, char *because) {
     for (uint32_t i = 0; i < facts->scene->shape_count; i++)
-        if (is_there(facts, i) && facts->scene->shapes[i].mesh.normals) return says(because, true, "the vertex normals of shape %u", i);
+        if (is_there(facts, i) && scene_mesh_of(facts->scene, i)->normals) return says(because, true, "the vertex normals of shape %u", i);
     return says(because, false, "no mesh has vertex normals");
 }
 
@@ -139,6 +143,7 @@ static int side_of(const struct scene_shape *sphere, const float point[3]) {
 // inward side, and the way to it stays inside. What is left, a light outside that would shine on the inward side, needs a camera that is
 // not outside.
 static bool sphere_shadows_itself(const struct scene *scene, const struct scene_shape *sphere) {
+    if (sphere->moves) return true; // where it is at the ray's time is not looked at
     if (side_of(sphere, scene->camera.position) < 0) return false;
     for (uint32_t i = 0; i < scene->light_count; i++)
         if (side_of(sphere, scene->lights[i].position) <= 0) return true;
@@ -151,7 +156,7 @@ static bool rule_SHADOWS(const struct facts *facts, char *because) {
     if (!scene->shadows) return says(because, false, "the scene switches shadows off");
     if (!(facts->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR))) return says(because, false, "nothing is lit that could lie in shadow");
     const struct scene_shape *last = &scene->shapes[facts->last_shape];
-    if (facts->triangles + facts->spheres > 1) return says(because, true, "light and %u primitives", facts->triangles + facts->spheres);
+    if (facts->triangles + facts->spheres > 1) return says(because, true, "light and %" PRIu64 " primitives", facts->triangles + facts->spheres);
     if (facts->triangles == 1) return says(because, false, "a triangle alone casts no shadow on itself");
     if (sphere_shadows_itself(scene, last)) return says(because, true, "shape %u, a sphere that is seen from inside", facts->last_shape);
     return says(because, false, "a sphere alone casts no shadow on the side that is lit");
@@ -183,10 +188,13 @@ static bool rule_MOTION_BLUR(const struct facts *facts, char *because) {
     return says(because, false, "nothing moves");
 }
 
+// A prototype that one shape draws, and that does not move, has become a mesh of the scene: the same triangles, to the bit.
 static bool rule_INSTANCES(const struct facts *facts, char *because) {
-    for (uint32_t i = 0; i < facts->scene->shape_count; i++)
-        if (is_there(facts, i) && facts->scene->shapes[i].type == SHAPE_INSTANCE) return says(because, true, "shape %u", i);
-    return says(because, false, "there are no instances");
+    const struct scene *scene = facts->scene;
+    for (uint32_t i = 0; i < scene->shape_count; i++)
+        if (is_there(facts, i) && scene->shapes[i].instance)
+            return says(because, true, "shape %u, which %s", i, scene->shapes[i].moves ? "moves" : "draws a mesh that is drawn more than once");
+    return says(because, false, "no mesh is drawn more than once, and none moves");
 }
 
 // ----------------------------------------------------------------------------------------------------------------- lights

@@ -18,7 +18,7 @@ bool ref_ray_make(struct ref_ray *out, const struct gn_ray *ray) {
 }
 
 void crossing_t(struct fraction *t, const struct ref_ray *ray, const struct crossing *crossing) {
-    if (crossing->center)
+    if (crossing->kind == CROSSING_SPHERE)
         sphere_t(t, ray, crossing);
     else
         triangle_t(t, ray, crossing);

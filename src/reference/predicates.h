@@ -47,15 +47,22 @@ enum sphere_root {
     ROOT_OTHER = 0, // of a ray that starts on the sphere by definition: t = 2(c-o)·d/(d·d); the first one is 0
 };
 
-// Where a ray crosses a primitive. Pointers are borrowed from the scene.
+enum crossing_kind {
+    CROSSING_NONE, // of a primitive that is known by its number alone
+    CROSSING_TRIANGLE,
+    CROSSING_SPHERE,
+};
+
+// Where a ray crosses a primitive.
 struct crossing {
-    const float *v[3];   // vertices of a triangle; NULL for a sphere
-    const float *center; // of a sphere; NULL for a triangle
+    enum crossing_kind kind;
+    float v[3][3];    // vertices of a triangle, where they are at the ray's time
+    float center[3];  // of a sphere, the same
     float radius;
     int side;              // of a triangle: the sign of d·N; N = (v1-v0)×(v2-v0)
     enum sphere_root root; // of a sphere
     struct interval t;     // contains the exact t; about 36 bits of it at least
-    uint32_t number;       // of the primitive in the BVH, as are the next three: filled by the traversal
+    uint32_t number;       // of the primitive as the BVH has them (scene.h), as are the next three: filled by the traversal
     uint32_t object, primitive, material;
 };
 

@@ -4,6 +4,7 @@
 
 #include "base/threads.h"
 #include "reference/rounding.h"
+#include "scene/instances.h"
 
 struct job {
     struct resolve_answer *answers;
@@ -12,19 +13,20 @@ struct job {
 };
 
 // The primitive a ray starts on, in the form that the traversal compares with: a sphere by itself, a triangle by its number alone.
-static struct crossing start_of(const struct ref_world *world, uint32_t self) {
+static struct crossing start_of(const struct ref_world *world, uint32_t self, float time) {
     struct crossing from = {.number = self};
-    if (self < world->triangle_count) return from;
+    if (self < world->triangle_count || self >= world->triangle_count + world->sphere_count) return from;
     const struct scene_shape *shape = &world->scene->shapes[scene_sphere_object(world->scene, self - world->triangle_count)];
-    from.center = shape->center;
+    from.kind = CROSSING_SPHERE;
     from.radius = shape->radius;
+    scene_place(from.center, shape, shape->center, time);
     return from;
 }
 
 static struct resolve_answer resolve(const struct ref_world *world, const struct resolve_ray *r) {
     struct resolve_answer answer = {.hit = {.t = INFINITY, .object = -1, .primitive = -1}};
     struct ref_ray ray = {{r->o[0], r->o[1], r->o[2]}, {r->d[0], r->d[1], r->d[2]}, r->tmin, r->tmax, 0, r->target, r->time};
-    struct crossing crossing, from = r->self == RESOLVE_NO_SELF ? (struct crossing){.number = RESOLVE_NO_SELF} : start_of(world, r->self);
+    struct crossing crossing, from = start_of(world, r->self, r->time);
     if (r->any) {
         answer.hit.object = any_hit(world, &ray, &from) ? 0 : -1;
         return answer;

@@ -8,7 +8,7 @@
 
 struct resolve_ray {
     float o[3], d[3], tmin, tmax; // open interval
-    uint32_t self;                // number in the BVH of the primitive that the ray starts on, or RESOLVE_NO_SELF
+    uint32_t self;                // number, as the BVH has them, of the primitive that the ray starts on, or RESOLVE_NO_SELF
     bool any;                     // occlusion only
     struct ref_target target;     // is not hit
     float time;
@@ -16,7 +16,7 @@ struct resolve_ray {
 
 struct resolve_answer {
     struct gn_hit hit; // as reference_trace gives it; of an occluded ray only object, 0
-    uint32_t number;   // of the primitive in the BVH
+    uint32_t number;   // of the primitive, as the BVH has them
 };
 
 // Decides rays[0 … count) on all cores. Of the primitive a ray starts on, a triangle is not hit again, a sphere only at its other root.

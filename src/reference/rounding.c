@@ -48,7 +48,7 @@ static float round_number(const struct ref_ray *ray, const struct crossing *cros
 void crossing_round(struct gn_hit *hit, const struct ref_ray *ray, const struct crossing *crossing) {
     hit->t = round_number(ray, crossing, crossing->t, crossing_t);
     hit->u = hit->v = 0;
-    if (crossing->center) return;
+    if (crossing->kind == CROSSING_SPHERE) return;
     struct interval u, v;
     triangle_weights(&u, &v, ray, crossing);
     hit->u = round_number(ray, crossing, u, crossing_u);

@@ -1,5 +1,6 @@
 #include "reference/shade.h"
 
+#include "scene/instances.h"
 #include "shaders/shared.h"
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -20,13 +21,14 @@ static double snap(double x) { return fabs(x) < 0x1p-180 ? 0 : x; }
 // The interpolated vertex normal; false where there is none, or it has no length.
 static bool vertex_normal(double n[3], const struct ref_world *world, uint32_t number, double u, double v) {
     struct scene_triangle triangle = scene_triangle_at(world->scene, number);
-    const float *normals = world->scene->shapes[triangle.object].mesh.normals;
+    const float *normals = scene_mesh_of(world->scene, triangle.object)->normals;
     if (!normals || !(world->effects & EFFECT_SMOOTH_NORMALS)) return false;
     const double weight[3] = {1 - u - v, u, v};
     for (int i = 0; i < 3; i++) {
         n[i] = 0;
         for (int k = 0; k < 3; k++) n[i] += weight[k] * normals[3 * (size_t)triangle.vertex[k] + i];
     }
+    scene_place_normal(n, &world->scene->shapes[triangle.object]);
     double length2 = dot(n, n);
     if (!(length2 > 0) || isinf(length2)) return false;
     normalize(n);
@@ -67,7 +69,7 @@ struct surface surface_at(const struct ref_world *world, const struct ref_ray *r
     struct surface out = {.crossing = *crossing};
     for (int i = 0; i < 3; i++) out.wo[i] = -ray->d[i];
     normalize(out.wo);
-    if (crossing->center)
+    if (crossing->kind == CROSSING_SPHERE)
         sphere_surface(&out, ray);
     else
         triangle_surface(&out, world, ray);

@@ -107,7 +107,7 @@ static bool line_meets(struct ref_ray *ray, struct interval f, const float cente
 bool sphere_cross(struct crossing *out, struct ref_ray *ray, const float center[3], float radius) {
     struct sphere_terms terms = terms_fp64(ray, center, radius);
     if (!line_meets(ray, terms.f, center, radius)) return false;
-    *out = (struct crossing){.center = center, .radius = radius};
+    *out = (struct crossing){.kind = CROSSING_SPHERE, .center = {center[0], center[1], center[2]}, .radius = radius};
     set_root(out, ray, &terms, ROOT_NEAR);
     if (crossing_inside(ray, out)) return true;
     set_root(out, ray, &terms, ROOT_FAR);
@@ -116,7 +116,7 @@ bool sphere_cross(struct crossing *out, struct ref_ray *ray, const float center[
 
 bool sphere_cross_again(struct crossing *out, struct ref_ray *ray, const float center[3], float radius) {
     struct sphere_terms terms = terms_fp64(ray, center, radius);
-    *out = (struct crossing){.center = center, .radius = radius};
+    *out = (struct crossing){.kind = CROSSING_SPHERE, .center = {center[0], center[1], center[2]}, .radius = radius};
     set_root(out, ray, &terms, ROOT_OTHER);
     return crossing_inside(ray, out);
 }

@@ -40,6 +40,6 @@ static bool shoot_some(void *data, size_t begin, size_t end, unsigned thread) {
 bool reference_trace(struct gn_hit *hits, struct context *ctx, const struct scene *scene, const struct bvh *bvh, const struct gn_ray *rays,
                      size_t count, bool any) {
     struct batch batch = {.hits = hits, .rays = rays, .any = any};
-    batch.world = ref_world_make(scene, bvh, EFFECT_TRIANGLES | EFFECT_SPHERES);
+    batch.world = ref_world_make(scene, bvh, EFFECT_TRIANGLES | EFFECT_SPHERES | EFFECT_INSTANCES);
     return parallel_for_progress(ctx, "reference", count, 256, shoot_some, &batch);
 }

@@ -10,8 +10,9 @@
 struct ref_world {
     const struct scene *scene;
     const struct bvh *bvh;
-    uint32_t effects;        // EFFECT_TRIANGLES and EFFECT_SPHERES: what can be hit at all
+    uint32_t effects;        // EFFECT_TRIANGLES, EFFECT_SPHERES and EFFECT_INSTANCES: what can be hit at all
     uint32_t triangle_count; // primitives from this number on are spheres
+    uint32_t sphere_count;   // and from triangle_count + sphere_count on triangles of instances; in bvh->order, instances
 };
 
 struct ref_world ref_world_make(const struct scene *scene, const struct bvh *bvh, uint32_t effects);

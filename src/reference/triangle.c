@@ -10,6 +10,8 @@
 // between 2^-699 and 2^400.
 #include "reference/predicates.h"
 
+#include <string.h>
+
 #define U 0x1p-53
 
 static void sub3(double out[3], const float *a, const double b[3]) {
@@ -138,7 +140,8 @@ static void depth_exact(struct depth_exact *out, const struct ref_ray *ray, cons
 bool triangle_cross(struct crossing *out, struct ref_ray *ray, const float *const v[3]) {
     int sign = common_sign(ray, v);
     if (sign == 0) return false;
-    *out = (struct crossing){.v = {v[0], v[1], v[2]}, .side = -sign};
+    *out = (struct crossing){.kind = CROSSING_TRIANGLE, .side = -sign};
+    for (int i = 0; i < 3; i++) memcpy(out->v[i], v[i], sizeof out->v[i]);
     struct depth depth = depth_fp64(ray, v);
     out->t = interval_div(depth.t, depth.s);
     if (!interval_narrow(out->t, 0)) {
@@ -161,9 +164,15 @@ static void quotient(struct fraction *out, const struct exact *numerator, const 
     }
 }
 
+struct vertices {
+    const float *v[3];
+};
+
+static struct vertices vertices_of(const struct crossing *crossing) { return (struct vertices){{crossing->v[0], crossing->v[1], crossing->v[2]}}; }
+
 void triangle_t(struct fraction *t, const struct ref_ray *ray, const struct crossing *crossing) {
     struct depth_exact depth;
-    depth_exact(&depth, ray, crossing->v);
+    depth_exact(&depth, ray, vertices_of(crossing).v);
     quotient(t, &depth.t, &depth.s);
 }
 
@@ -171,7 +180,7 @@ void triangle_t(struct fraction *t, const struct ref_ray *ray, const struct cros
 static void weight_exact(struct fraction *out, const struct ref_ray *ray, const struct crossing *crossing, int vertex) {
     struct depth_exact depth;
     struct exact f;
-    depth_exact(&depth, ray, crossing->v);
+    depth_exact(&depth, ray, vertices_of(crossing).v);
     edge_function_exact(&f, ray, crossing->v[(vertex + 1) % 3], crossing->v[(vertex + 2) % 3]);
     exact_negate(&f);
     quotient(out, &f, &depth.s);
@@ -181,7 +190,7 @@ void crossing_u(struct fraction *u, const struct ref_ray *ray, const struct cros
 void crossing_v(struct fraction *v, const struct ref_ray *ray, const struct crossing *crossing) { weight_exact(v, ray, crossing, 2); }
 
 static struct interval weight(const struct ref_ray *ray, const struct crossing *crossing, int vertex) {
-    struct interval d = interval_negate(depth_fp64(ray, crossing->v).s);
+    struct interval d = interval_negate(depth_fp64(ray, vertices_of(crossing).v).s);
     struct interval f = edge_fp64(ray, crossing->v[(vertex + 1) % 3], crossing->v[(vertex + 2) % 3]);
     struct interval fast = interval_div(f, d);
     if (interval_narrow(fast, 1)) return fast;

@@ -4,6 +4,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "scene/instances.h"
+
 // a + b rounded up to fp32. The sum in fp64 may itself be rounded: what that leaves out is found as D. E. Knuth does (TwoSum).
 static float sum_up(float a, float b) {
     const double x = a, y = b, sum = x + y;
@@ -26,15 +28,29 @@ static void include_mesh(struct scene *scene, const struct scene_mesh *mesh) {
     }
 }
 
+static void include_instance(struct scene *scene, const struct scene_instance *instance) {
+    for (int axis = 0; axis < 3; axis++) include(scene, axis, instance->min[axis], instance->max[axis]);
+}
+
+// At the beginning and the end of its motion; between them it is between them.
+static void include_sphere(struct scene *scene, const struct scene_shape *shape) {
+    for (int end = 0; end <= 1; end++) {
+        float center[3];
+        scene_place(center, shape, shape->center, (float)end);
+        for (int axis = 0; axis < 3; axis++)
+            include(scene, axis, -sum_up(-center[axis], shape->radius), sum_up(center[axis], shape->radius));
+    }
+}
+
 void scene_bounds(struct scene *scene) {
     for (int axis = 0; axis < 3; axis++) scene->bounds_min[axis] = FLT_MAX, scene->bounds_max[axis] = -FLT_MAX;
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         const struct scene_shape *shape = &scene->shapes[i];
-        if (shape->type != SHAPE_SPHERE) {
+        if (shape->instance)
+            include_instance(scene, &scene->instances[shape->instance - 1]);
+        else if (shape->type != SHAPE_SPHERE)
             include_mesh(scene, &shape->mesh);
-            continue;
-        }
-        for (int axis = 0; axis < 3; axis++)
-            include(scene, axis, -sum_up(-shape->center[axis], shape->radius), sum_up(shape->center[axis], shape->radius));
+        else
+            include_sphere(scene, shape);
     }
 }

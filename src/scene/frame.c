@@ -4,6 +4,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "scene/instances.h"
+
 #define FOV_DEG 36.0
 #define AZIMUTH_DEG 30.0 // to the right of the front
 #define ELEVATION_DEG 18.0
@@ -17,6 +19,15 @@ static void widen(struct scene_ball *ball, const float *point, double radius) {
     ball->radius = fmax(ball->radius, sqrt(square) + radius);
 }
 
+// Where a mesh is when the shutter opens.
+static void widen_mesh(struct scene_ball *ball, const struct scene_shape *shape, const struct scene_mesh *mesh) {
+    for (size_t k = 0; k < 3 * (size_t)mesh->triangle_count; k++) {
+        float placed[3];
+        scene_place(placed, shape, mesh->positions + 3 * (size_t)mesh->indices[k], 0);
+        widen(ball, placed, 0);
+    }
+}
+
 struct scene_ball scene_ball(const struct scene *scene) {
     struct scene_ball ball = {.radius = 0};
     if (scene->bounds_min[0] <= scene->bounds_max[0])
@@ -26,8 +37,7 @@ struct scene_ball scene_ball(const struct scene *scene) {
         if (shape->type == SHAPE_SPHERE)
             widen(&ball, shape->center, shape->radius);
         else
-            for (size_t k = 0; k < 3 * (size_t)shape->mesh.triangle_count; k++)
-                widen(&ball, shape->mesh.positions + 3 * (size_t)shape->mesh.indices[k], 0);
+            widen_mesh(&ball, shape, scene_mesh_of(scene, i));
     }
     if (ball.radius == 0) ball.radius = 1;
     return ball;

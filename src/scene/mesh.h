@@ -7,6 +7,9 @@
 // Triangles, and spheres, of a whole scene: what a reference in a BVH node can number.
 #define MOST_PRIMITIVES ((1u << 26) - 1)
 
+// Triangles of all instances together: with the others they are numbered in 31 bits.
+#define MOST_INSTANCED (1u << 30)
+
 void mesh_finish(struct scene_mesh *mesh);
 
 // Makes room for counts of vertices and triangles; zeroed. GN_LIMIT when there are too many, or no memory.

@@ -12,6 +12,7 @@
 #include "scene/area_lights.h"
 #include "scene/bounds.h"
 #include "scene/build.h"
+#include "scene/instances.h"
 #include "scene/mesh.h"
 
 // What the camera of a model file leaves open: it has a pinhole and stands still.
@@ -55,6 +56,8 @@ void scene_finish(struct scene *scene) {
     free(scene->path);
     free(scene->lights);
     free(scene->shapes);
+    free(scene->parts);
+    free(scene->instances);
     free(scene->first_triangle);
     free(scene->first_sphere);
     *scene = (struct scene){0};
@@ -92,6 +95,7 @@ bool shape_take_model(struct scene_shape *shape, struct scene_build *build, stru
 }
 
 bool scene_derive(struct scene *scene, struct context *ctx) {
+    if (!scene_list_instances(scene, ctx)) return false;
     scene->first_triangle = array_alloc(ctx, (size_t)scene->shape_count + 1, sizeof *scene->first_triangle, "shapes");
     scene->first_sphere = array_alloc(ctx, (size_t)scene->shape_count + 1, sizeof *scene->first_sphere, "shapes");
     if (!scene->first_triangle || !scene->first_sphere) return false;
@@ -99,7 +103,7 @@ bool scene_derive(struct scene *scene, struct context *ctx) {
     for (uint32_t i = 0; i < scene->shape_count; i++) {
         if (scene->shapes[i].type == SHAPE_SPHERE)
             spheres++;
-        else
+        else if (!scene->shapes[i].instance)
             triangles += scene->shapes[i].mesh.triangle_count;
         if (triangles > MOST_PRIMITIVES || spheres > MOST_PRIMITIVES)
             return fail(ctx, GN_LIMIT, "%s: the scene has more than %u %s", scene->path, MOST_PRIMITIVES,
@@ -107,12 +111,26 @@ bool scene_derive(struct scene *scene, struct context *ctx) {
         scene->first_triangle[i + 1] = (uint32_t)triangles;
         scene->first_sphere[i + 1] = (uint32_t)spheres;
     }
+    const struct scene_part *last = scene->part_count ? &scene->parts[scene->part_count - 1] : NULL;
+    if (last && triangles + last->first + last->mesh->triangle_count > MOST_PRIMITIVES)
+        return fail(ctx, GN_LIMIT, "%s: the scene and what its instances draw have more than %u triangles", scene->path, MOST_PRIMITIVES);
     scene_bounds(scene);
     return true;
 }
 
 uint32_t scene_triangle_count(const struct scene *scene) { return scene->shape_count ? scene->first_triangle[scene->shape_count] : 0; }
 uint32_t scene_sphere_count(const struct scene *scene) { return scene->shape_count ? scene->first_sphere[scene->shape_count] : 0; }
+
+uint64_t scene_instanced_count(const struct scene *scene) {
+    if (scene->instance_count == 0) return 0;
+    const struct scene_instance *last = &scene->instances[scene->instance_count - 1];
+    return (uint64_t)last->first + scene->parts[last->part].mesh->triangle_count;
+}
+
+const struct scene_mesh *scene_mesh_of(const struct scene *scene, uint32_t object) {
+    const struct scene_shape *shape = &scene->shapes[object];
+    return shape->type == SHAPE_INSTANCE ? &scene->prototypes[shape->prototype] : &shape->mesh;
+}
 
 // The last shape whose number is at most `number`: the one that has it, as the others there are empty.
 static uint32_t shape_of(const uint32_t *first, uint32_t shape_count, uint32_t number) {
@@ -127,15 +145,38 @@ static uint32_t shape_of(const uint32_t *first, uint32_t shape_count, uint32_t n
     return low;
 }
 
+// The instance that has this number among the triangles of all instances; each has some.
+static const struct scene_instance *instance_at(const struct scene *scene, uint32_t number) {
+    uint32_t low = 0, high = scene->instance_count;
+    while (high - low > 1) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (scene->instances[middle].first <= number)
+            low = middle;
+        else
+            high = middle;
+    }
+    return &scene->instances[low];
+}
+
 struct scene_triangle scene_triangle_at(const struct scene *scene, uint32_t number) {
-    const uint32_t object = shape_of(scene->first_triangle, scene->shape_count, number);
-    const struct scene_mesh *mesh = &scene->shapes[object].mesh;
-    struct scene_triangle triangle = {.object = object, .primitive = number - scene->first_triangle[object]};
+    const uint32_t triangles = scene_triangle_count(scene), others = triangles + scene_sphere_count(scene);
+    struct scene_triangle triangle;
+    if (number < triangles) {
+        triangle.object = shape_of(scene->first_triangle, scene->shape_count, number);
+        triangle.primitive = number - scene->first_triangle[triangle.object];
+    } else {
+        const struct scene_instance *instance = instance_at(scene, number - others);
+        triangle.object = instance->shape;
+        triangle.primitive = number - others - instance->first;
+    }
+    const struct scene_shape *shape = &scene->shapes[triangle.object];
+    const struct scene_mesh *mesh = scene_mesh_of(scene, triangle.object);
     for (int k = 0; k < 3; k++) {
         triangle.vertex[k] = mesh->indices[3 * (size_t)triangle.primitive + (size_t)k];
         triangle.v[k] = mesh->positions + 3 * (size_t)triangle.vertex[k];
     }
-    triangle.material = mesh->materials ? mesh->materials[triangle.primitive] : scene->shapes[object].material;
+    const bool own = !mesh->materials || (shape->type == SHAPE_INSTANCE && shape->own_material);
+    triangle.material = own ? shape->material : mesh->materials[triangle.primitive];
     return triangle;
 }
 

@@ -1,7 +1,8 @@
 // A scene as plain arrays: what a file said, checked, with every number rounded to fp32 once. Knows no Vulkan and no BVH.
 //
 // Shapes keep the file's order: a hit's `object` is an index in `shapes`. Triangles and spheres are also numbered through
-// the whole scene, in shape order: `first_triangle` and `first_sphere` map those numbers to shapes.
+// the whole scene, in shape order: `first_triangle` and `first_sphere` map those numbers to shapes. A hierarchy numbers the triangles first, then the
+// spheres, then the triangles of the instances as if each had its own.
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
@@ -138,6 +139,21 @@ struct scene_shape {
     bool own_material;       // of an instance: `material` holds for all of it; else what the prototype's triangles have
     bool moves;
     float motion[3];         // how far it has moved when the shutter closes; at time τ a vertex or center is at fl(p + fl(τ·motion))
+    uint32_t instance;       // derived: 1 + its number in scene.instances; 0: it is none of them
+};
+
+// A mesh that instances draw, or a shape that moves: kept once, in its own coordinates. Derived, as are the instances.
+struct scene_part {
+    const struct scene_mesh *mesh; // in prototypes or shapes
+    uint32_t first;                // triangles in the parts before
+    float min[3], max[3];          // of what its triangles use
+};
+
+// A shape that draws a part: an instance, or a mesh, triangle or rectangle that moves.
+struct scene_instance {
+    uint32_t shape, part;
+    uint32_t first;       // triangles of the instances before
+    float min[3], max[3]; // in scene coordinates, at all times
 };
 
 // Zeroed is empty; scene_finish accepts a half-made scene.
@@ -156,7 +172,10 @@ struct scene {
     struct scene_shape *shapes;
     struct scene_mesh *prototypes;  // meshes that instances draw
     uint32_t material_count, texture_count, light_count, shape_count, prototype_count;
-    uint32_t *first_triangle;           // shape_count + 1: number of triangles in the shapes before
+    struct scene_part *parts;
+    struct scene_instance *instances;   // in the order of their shapes
+    uint32_t part_count, instance_count;
+    uint32_t *first_triangle;           // shape_count + 1: number of triangles in the shapes before, without instances
     uint32_t *first_sphere;             // shape_count + 1: number of spheres in the shapes before
     float bounds_min[3], bounds_max[3]; // of all shapes, rounded outward, finite; min > max when there are none
 };
@@ -169,9 +188,16 @@ void scene_finish(struct scene *scene);
 uint32_t scene_triangle_count(const struct scene *scene);
 uint32_t scene_sphere_count(const struct scene *scene);
 
-// One triangle of the scene, by its number through the whole scene.
+// Triangles of all instances together.
+uint64_t scene_instanced_count(const struct scene *scene);
+
+// The mesh that a shape draws: its own, or an instance's prototype.
+const struct scene_mesh *scene_mesh_of(const struct scene *scene, uint32_t object);
+
+// One triangle of the scene, by its number: below scene_triangle_count that through the whole scene; from scene_triangle_count + scene_sphere_count on it is an
+// instance's.
 struct scene_triangle {
-    const float *v[3];  // vertices, 3 floats each
+    const float *v[3];  // vertices, 3 floats each; an instance's in its part's coordinates: scene_place (scene/instances.h) says where they are
     uint32_t vertex[3]; // their indices in the mesh
     uint32_t object, primitive, material;
 };

@@ -1,0 +1,319 @@
+// Instances and shapes that move, against the same scene with every vertex put where it is: the same hits to the bit, in every tier and in the reference.
+#include "shot.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "bvh/scene_boxes.h"
+#include "effects/plan.h"
+#include "oracle.h"
+#include "reference/reference.h"
+#include "reference/resolve.h"
+#include "render/render.h"
+#include "scene/build.h"
+#include "scene/instances.h"
+
+#define MOST_SHAPES 24
+
+static uint32_t below(uint64_t *state, uint32_t count) { return oracle_random(state) % count; }
+
+// --------------------------------------------------------------------------------------------------------------- making scenes
+
+static void *allocate(size_t count, size_t size) {
+    void *memory = calloc(count ? count : 1, size);
+    assert_non_null(memory);
+    return memory;
+}
+
+// A closed bumpy surface of 2·n·(n - 1)… triangles around the origin, radius about 1, with vertex normals.
+static struct scene_mesh ball_make(uint32_t n, uint64_t seed) {
+    struct scene_mesh mesh = {.vertex_count = 2 * n * n + 2, .triangle_count = 4 * n * n};
+    mesh.positions = allocate(3 * (size_t)mesh.vertex_count, sizeof(float));
+    mesh.normals = allocate(3 * (size_t)mesh.vertex_count, sizeof(float));
+    mesh.indices = allocate(3 * (size_t)mesh.triangle_count, sizeof(uint32_t));
+    const uint32_t south = 2 * n * n, north = south + 1, across = 2 * n;
+    uint64_t state = seed;
+    for (uint32_t i = 0; i < mesh.vertex_count; i++) {
+        double polar = 3.14159265 * (i / across + 1) / (n + 1), turn = 3.14159265 * (i % across) / n, radius = 0.8 + 0.4 * oracle_uniform(&state);
+        if (i >= south) polar = i == south ? 0 : 3.14159265;
+        const double p[3] = {sin(polar) * cos(turn), sin(polar) * sin(turn), cos(polar)};
+        for (int k = 0; k < 3; k++) {
+            mesh.positions[3 * i + k] = (float)(radius * p[k]);
+            mesh.normals[3 * i + k] = (float)p[k];
+        }
+    }
+    uint32_t *to = mesh.indices;
+    for (uint32_t row = 0; row <= n; row++)
+        for (uint32_t k = 0; k < across; k++) {
+            const uint32_t a = row == 0 ? south : (row - 1) * across + k, b = row == 0 ? south : (row - 1) * across + (k + 1) % across;
+            const uint32_t c = row == n ? north : row * across + k, d = row == n ? north : row * across + (k + 1) % across;
+            if (row < n) *to++ = a, *to++ = c, *to++ = d;
+            if (row > 0) *to++ = a, *to++ = d, *to++ = b;
+        }
+    assert_true(to == mesh.indices + 3 * (size_t)mesh.triangle_count);
+    return mesh;
+}
+
+static struct scene_mesh mesh_copy(const struct scene_mesh *from) {
+    struct scene_mesh mesh = *from;
+    mesh.positions = allocate(3 * (size_t)mesh.vertex_count, sizeof(float));
+    mesh.indices = allocate(3 * (size_t)mesh.triangle_count, sizeof(uint32_t));
+    memcpy(mesh.positions, from->positions, 3 * (size_t)mesh.vertex_count * sizeof(float));
+    memcpy(mesh.indices, from->indices, 3 * (size_t)mesh.triangle_count * sizeof(uint32_t));
+    mesh.normals = NULL;
+    return mesh;
+}
+
+static struct scene empty_scene(void) {
+    struct scene scene = {.film = {.width = 16, .height = 16, .spp = 1, .filter_radius = 0.5f}, .shadows = true, .material_count = 1};
+    scene.camera = (struct scene_camera){.position = {0, 0, 9}, .up = {0, 1, 0}, .fov_y_deg = 60};
+    scene.materials = allocate(1, sizeof *scene.materials);
+    scene.shapes = allocate(MOST_SHAPES, sizeof *scene.shapes);
+    scene.prototypes = allocate(4, sizeof *scene.prototypes);
+    return scene;
+}
+
+static struct scene_shape *add_shape(struct scene *scene, enum shape_type type) {
+    struct scene_shape *shape = &scene->shapes[scene->shape_count++];
+    assert_true(scene->shape_count <= MOST_SHAPES);
+    *shape = (struct scene_shape){.type = type};
+    return shape;
+}
+
+static struct scene_shape *add_instance(struct scene *scene, uint32_t prototype, const float placement[12]) {
+    struct scene_shape *shape = add_shape(scene, SHAPE_INSTANCE);
+    shape->prototype = prototype;
+    memcpy(shape->placement, placement, sizeof shape->placement);
+    return shape;
+}
+
+static struct scene_shape *add_sphere(struct scene *scene, float x, float y, float z, float radius) {
+    struct scene_shape *shape = add_shape(scene, SHAPE_SPHERE);
+    shape->center[0] = x, shape->center[1] = y, shape->center[2] = z, shape->radius = radius;
+    return shape;
+}
+
+static void finish_making(struct scene *scene) { fixture_assert(scene_derive(scene, fixture_context())); }
+
+// The fl(…) sequence of scene.h, with every result stored, so that no compiler keeps more digits.
+static void place_by_hand(float out[3], const struct scene_shape *shape, const float v[3], float time) {
+    for (int i = 0; i < 3; i++) {
+        volatile float sum = v[i], product;
+        if (shape->type == SHAPE_INSTANCE) {
+            const float *m = shape->placement + 4 * i;
+            sum = m[0] * v[0];
+            product = m[1] * v[1];
+            sum = sum + product;
+            product = m[2] * v[2];
+            sum = sum + product;
+            sum = sum + m[3];
+        }
+        product = time * shape->motion[i];
+        out[i] = shape->moves ? sum + product : sum;
+    }
+}
+
+// The same scene with every vertex where it is at a time. Call it before the scene's derived fields are filled.
+static struct scene frozen(const struct scene *scene, float time) {
+    struct scene out = empty_scene();
+    out.camera = scene->camera;
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
+        const struct scene_shape *shape = &scene->shapes[i];
+        struct scene_shape *copy = add_shape(&out, shape->type == SHAPE_INSTANCE ? SHAPE_MESH : shape->type);
+        place_by_hand(copy->center, shape, shape->center, time);
+        copy->radius = shape->radius;
+        if (shape->type == SHAPE_SPHERE) continue;
+        copy->mesh = mesh_copy(shape->type == SHAPE_INSTANCE ? &scene->prototypes[shape->prototype] : &shape->mesh);
+        for (uint32_t k = 0; k < copy->mesh.vertex_count; k++) {
+            float placed[3];
+            place_by_hand(placed, shape, copy->mesh.positions + 3 * (size_t)k, time);
+            memcpy(copy->mesh.positions + 3 * (size_t)k, placed, sizeof placed);
+        }
+    }
+    return out;
+}
+
+// --------------------------------------------------------------------------------------------------------------- placements
+
+static void rotation(double m[3][3], uint64_t *state) {
+    double q[4], length = 0;
+    for (int i = 0; i < 4; i++) q[i] = 2 * oracle_uniform(state) - 1, length += q[i] * q[i];
+    for (int i = 0; i < 4; i++) q[i] /= sqrt(length);
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                            {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                            {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+    memcpy(m, r, sizeof r);
+}
+
+// A rotation, times axes scaled and sheared, times `size`; then a place.
+static void placement_make(float out[12], uint64_t *state, const double axes[3], double shear, double size, const double place[3]) {
+    double r[3][3];
+    rotation(r, state);
+    for (int i = 0; i < 3; i++) {
+        const double row[3] = {r[i][0], r[i][1] + shear * r[i][0], r[i][2] - shear * r[i][1]};
+        for (int k = 0; k < 3; k++) out[4 * i + k] = (float)(row[k] * axes[k] * size);
+        out[4 * i + 3] = (float)place[i];
+    }
+}
+
+// Where things are around: each fills a scene.
+struct setting {
+    const char *name;
+    double size, spread, away; // of the instances; of their places around; how far all of it is from the origin
+    double axes[3], shear;
+    uint32_t flattened;        // instances that are to be meshes
+};
+
+static const struct setting settings[] = {
+    {"rotated", 1, 4, 0, {1, 1, 1}, 0, 0},
+    {"translated by 1e4", 1, 4, 1e4, {1, 1, 1}, 0, 0},
+    {"translated by 4.5e6", 1, 4, 4.5e6, {1, 1, 1}, 0, 0},
+    {"mirrored", 1, 4, 0, {-1, 1, 1}, 0, 0},
+    {"sheared", 1, 4, 0, {1, 1, 1}, 2, 0},
+    {"stretched", 1, 4, 10, {1, 0.02, 3}, 0.5, 0},
+    {"flat as a leaf", 1, 4, 0, {1, 1e-4, 1}, 0, 0},
+    {"flatter than is good", 1, 4, 0, {1, 1e-6, 1}, 0, 6},
+    {"scaled by 1e-4", 1e-4, 4e-4, 0, {1, 1, 1}, 0.3, 0},
+    {"scaled by 1e-4 in a large place", 1e-4, 3, 0, {1, 1, 1}, 0.3, 0},
+    {"scaled by 1e-4, translated by 1e2", 1e-4, 3e-4, 1e2, {1, 1, 1}, 0, 0},
+    {"scaled by 1e-4, translated by 1e4", 1e-4, 3e-4, 1e4, {1, 1, 1}, 0, 0},
+    {"scaled by 1e4", 1e4, 4e4, 0, {1, -1, 1}, 0.3, 0},
+    {"scaled by 1e-25", 1e-25, 4e-25, 0, {1, 1, 1}, 0.3, 0},
+    {"scaled by 1e-37", 1e-37, 4e-37, 0, {1, 1, 1}, 0.3, 6},
+    {"scaled by 1e25", 1e25, 4e25, 0, {1, 1, 1}, 0.3, 0},
+};
+#define SETTINGS (sizeof settings / sizeof settings[0])
+#define INSTANCES 6
+
+static void fill(struct scene *scene, const struct setting *how, bool moving) {
+    uint64_t state = 5;
+    *scene = empty_scene();
+    scene->prototypes[scene->prototype_count++] = ball_make(6, 3);
+    scene->prototypes[scene->prototype_count++] = ball_make(3, 4);
+    float placement[12];
+    double place[3];
+    for (uint32_t i = 0; i < INSTANCES; i++) {
+        for (int k = 0; k < 3; k++) place[k] = how->away * (k == 1 ? -0.7 : 1) + how->spread * (oracle_uniform(&state) - 0.5);
+        placement_make(placement, &state, how->axes, how->shear, how->size, place);
+        struct scene_shape *shape = add_instance(scene, i % 2, placement);
+        if (moving && i % 3 != 1) {
+            shape->moves = true;
+            for (int k = 0; k < 3; k++) shape->motion[k] = (float)(how->size * (2 * oracle_uniform(&state) - 1));
+        }
+        if (i == 2) add_sphere(scene, (float)place[0], (float)(place[1] + how->size), (float)place[2], (float)(0.3 * how->size));
+    }
+    struct scene_shape *plain = add_shape(scene, SHAPE_MESH);
+    plain->mesh = ball_make(3, 5);
+    for (uint32_t i = 0; i < 3 * plain->mesh.vertex_count; i++)
+        plain->mesh.positions[i] = (float)(how->away * (i % 3 == 1 ? -0.7 : 1) + 0.4 * how->size * plain->mesh.positions[i]);
+    if (moving) {
+        struct scene_shape *sphere = add_sphere(scene, (float)how->away, (float)(-0.7 * how->away), (float)how->away, (float)(0.5 * how->size));
+        struct scene_shape *mesh = plain;
+        for (int k = 0; k < 3; k++) {
+            sphere->motion[k] = (float)(how->size * (k - 0.9));
+            mesh->motion[k] = (float)(how->size * (0.7 - k));
+        }
+        sphere->moves = mesh->moves = true;
+    }
+    for (int k = 0; k < 3; k++) {
+        scene->camera.look_at[k] = (float)(how->away * (k == 1 ? -0.7 : 1));
+        scene->camera.position[k] = (float)(how->away * (k == 1 ? -0.7 : 1) + 2 * how->spread * (k == 2));
+    }
+}
+
+// Rays at vertices, points of edges and anywhere, from near, far and inside.
+static void aim(struct gn_ray *rays, uint32_t count, const struct scene *flat, const struct setting *how) {
+    uint64_t state = 9;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct scene_triangle t = scene_triangle_at(flat, below(&state, scene_triangle_count(flat)));
+        const double s = i % 3 == 0 ? 0 : oracle_uniform(&state), r = i % 3 < 2 ? 0 : oracle_uniform(&state) * (1 - s);
+        const double away = how->spread * (i % 5 == 0 ? 100 : i % 5 == 1 ? 0.2 : 3);
+        rays[i] = (struct gn_ray){.tmin = 0, .tmax = i % 11 ? INFINITY : 1};
+        for (int k = 0; k < 3; k++) {
+            const double p = t.v[0][k] + s * ((double)t.v[1][k] - t.v[0][k]) + r * ((double)t.v[2][k] - t.v[0][k]);
+            const double center = how->away * (k == 1 ? -0.7 : 1);
+            rays[i].origin[k] = (float)(center + away * (2 * oracle_uniform(&state) - 1));
+            rays[i].direction[k] = (float)p - rays[i].origin[k];
+            if (i % 17 == 0 && k == (int)(i % 3)) rays[i].direction[k] = 0;
+        }
+        if (rays[i].direction[0] == 0 && rays[i].direction[1] == 0 && rays[i].direction[2] == 0) rays[i].direction[0] = 1;
+    }
+}
+
+// --------------------------------------------------------------------------------------------------------------- the tests
+
+struct pair {
+    struct scene scene, flat;
+    struct bvh bvh, flat_bvh;
+};
+
+static void pair_build(struct pair *pair) {
+    finish_making(&pair->scene);
+    finish_making(&pair->flat);
+    fixture_assert(bvh_build_scene(&pair->bvh, fixture_context(), &pair->scene));
+    fixture_assert(bvh_build_scene(&pair->flat_bvh, fixture_context(), &pair->flat));
+}
+
+static void pair_finish(struct pair *pair) {
+    bvh_finish(&pair->bvh);
+    bvh_finish(&pair->flat_bvh);
+    scene_finish(&pair->scene);
+    scene_finish(&pair->flat);
+}
+
+static bool same_hit(const struct gn_hit *a, const struct gn_hit *b) {
+    return a->t == b->t && a->u == b->u && a->v == b->v && a->object == b->object && a->primitive == b->primitive;
+}
+
+static void bounds_and_kinds(void **state) {
+    (void)state;
+    for (size_t i = 0; i < SETTINGS; i++) {
+        struct pair pair;
+        fill(&pair.scene, &settings[i], false);
+        pair.flat = frozen(&pair.scene, 0);
+        pair_build(&pair);
+        assert_int_equal(pair.scene.instance_count, INSTANCES - settings[i].flattened);
+        assert_int_equal(pair.flat.instance_count, 0);
+        assert_int_equal(pair.scene.part_count, settings[i].flattened ? 0 : 2);
+        assert_memory_equal(pair.scene.bounds_min, pair.flat.bounds_min, sizeof pair.flat.bounds_min);
+        assert_memory_equal(pair.scene.bounds_max, pair.flat.bounds_max, sizeof pair.flat.bounds_max);
+        pair_finish(&pair);
+    }
+}
+
+static void reference_hits_the_same(void **state) {
+    (void)state;
+    enum { RAYS = 3000 };
+    static struct gn_ray rays[RAYS];
+    static struct gn_hit hits[RAYS], right[RAYS];
+    for (size_t i = 0; i < SETTINGS; i++) {
+        struct pair pair;
+        fill(&pair.scene, &settings[i], false);
+        pair.flat = frozen(&pair.scene, 0);
+        pair_build(&pair);
+        aim(rays, RAYS, &pair.flat, &settings[i]);
+        uint32_t found = 0, wrong = 0, wrong_any = 0;
+        fixture_assert(reference_trace(hits, fixture_context(), &pair.scene, &pair.bvh, rays, RAYS, false));
+        fixture_assert(reference_trace(right, fixture_context(), &pair.flat, &pair.flat_bvh, rays, RAYS, false));
+        for (uint32_t k = 0; k < RAYS; k++) {
+            found += right[k].object >= 0;
+            wrong += !same_hit(&hits[k], &right[k]);
+        }
+        fixture_assert(reference_trace(hits, fixture_context(), &pair.scene, &pair.bvh, rays, RAYS, true));
+        for (uint32_t k = 0; k < RAYS; k++) wrong_any += (hits[k].object >= 0) != (right[k].object >= 0);
+        print_message("%-36s %u of %u rays hit, %u wrong, %u any\n", settings[i].name, found, RAYS, wrong, wrong_any);
+        assert_true(found > RAYS / 3);
+        assert_int_equal(wrong + wrong_any, 0);
+        pair_finish(&pair);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bounds_and_kinds),
+        cmocka_unit_test(reference_hits_the_same),
+        cmocka_unit_test(fixture_silent),
+    };
+    return cmocka_run_group_tests_name("instances", tests, NULL, fixture_close);
+}
