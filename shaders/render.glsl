@@ -44,18 +44,50 @@ uvec2 picture_pixel(ivec2 at) {
     return (uvec2(at) + uvec2(0u, args.band_y)) * args.stride + uvec2(args.phase % args.stride, args.phase / args.stride);
 }
 
-float filter_knot(uint knot) { return uintBitsToFloat(texelFetch(camera_words, CAMERA_FILTER + int(knot / 4u))[knot % 4u]); }
+vec4 camera_word(int word) { return uintBitsToFloat(texelFetch(camera_words, word)); }
+
+float filter_knot(uint knot) { return camera_word(CAMERA_FILTER_WORD + int(knot / 4u))[knot % 4u]; }
 
 float filtered(float u) {
     filter_cell cell = filter_cell_of(u);
     return filter_offset(cell, filter_knot(cell.knot), filter_knot(cell.knot + 1u));
 }
 
+vec2 film_position(draws d) {
+    vec2 offset = HAS_ANTIALIASING ? film_offset(d.seed, d.pixel, d.number, args.spp) : vec2(0.5);
+    return HAS_FILTER ? vec2(filtered(offset.x), filtered(offset.y)) : offset;
+}
+
+camera_frame camera_frame_number(int number) {
+    int word = CAMERA_FRAMES_WORD + 3 * number;
+    return camera_frame(camera_word(word).xyz, camera_word(word + 1).xyz, camera_word(word + 2).xyz);
+}
+
+camera_frame camera_frame_at(float time) {
+    float frames = time * float(CAMERA_FRAMES); // exact
+    int first = int(frames);
+    return camera_frame_between(camera_frame_number(first), camera_frame_number(first + 1), frames - float(first));
+}
+
 ray camera_ray(uvec2 pixel, uint number) {
-    vec2 offset = HAS_ANTIALIASING ? film_offset(args.seed, pixel, number, args.spp) : vec2(0.5);
-    if (HAS_FILTER) offset = vec2(filtered(offset.x), filtered(offset.y));
-    vec3 direction = camera_direction(args.corner.xyz, args.du.xyz, args.dv.xyz, pixel, offset);
-    return ray_make(real3(args.position.xyz), real3(direction), 0.0, INFINITY, SELF_NONE);
+    draws d = draws(args.seed, pixel, number);
+    camera_frame frame = camera_frame(args.corner.xyz, args.du.xyz, args.dv.xyz);
+    vec3 position = args.position.xyz;
+    float time = 0.0;
+    if (HAS_MOTION_BLUR) {
+        time = draw(d, PAIR_TIME).x;
+        frame = camera_frame_at(time);
+        position = camera_position(position, camera_word(0).xyz, time);
+    }
+    vec3 direction = camera_direction(frame.corner, frame.du, frame.dv, pixel, film_position(d));
+    if (HAS_DEPTH_OF_FIELD) {
+        vec2 point = camera_disk_point(draw(d, PAIR_LENS));
+        position = camera_add(position, camera_lens_point(point, camera_word(0).w, frame.du, frame.dv));
+        direction = camera_add(direction, -camera_lens_point(point, camera_word(1).x, frame.du, frame.dv));
+    }
+    ray r = ray_make(real3(position), real3(direction), 0.0, INFINITY, SELF_NONE);
+    r.time = time;
+    return r;
 }
 
 // What light `number` would add at s, seen along -v, if nothing is in its way; and the way to it.

@@ -10,6 +10,16 @@
 
 // Dimension pairs, each used once per sample.
 #define PAIR_FILM 0u
+#define PAIR_LENS 1u
+#define PAIR_TIME 2u                // when; unused
+#define PAIR_PATH 16u               // and PAIRS_OF_A_RAY for each ray of the path
+#define PAIRS_OF_A_RAY 65536u
+#define PAIR_FOG 0x40000000u        // and the number of the ray in the sample: how far; unused
+#define PAIR_ALPHA 0x80000000u      // and the number of the ray in the sample: whether the surface is there; unused
+// Those of a ray, from where it arrives on.
+#define PAIR_DIRECTION 0u
+#define PAIR_CHOICE 1u              // of a lobe; whether the path goes on
+#define PAIR_LIGHTS 4u              // two for each light: where on it; which part of it, unused
 
 uint hash_uint(uint x) {
     x ^= x >> 16;
@@ -60,6 +70,20 @@ uvec2 independent_bits(uint seed, uvec2 pixel, uint index, uint pair) {
 
 // To [0, 1): at most 1 - 2^-24, never 1.
 vec2 unit_interval(uvec2 bits) { return vec2(bits >> 8u) * 5.9604644775390625e-8; }
+
+// The random numbers of one sample.
+struct draws {
+    uint seed;
+    uvec2 pixel;
+    uint number;
+};
+
+vec2 draw(draws d, uint pair) {
+    bool independent = CHOSEN_SAMPLER == SAMPLER_INDEPENDENT;
+    return unit_interval(independent ? independent_bits(d.seed, d.pixel, d.number, pair) : sample_bits(d.seed, d.pixel, d.number, pair));
+}
+
+vec2 draw_of_ray(draws d, uint depth, uint pair) { return draw(d, PAIR_PATH + depth * PAIRS_OF_A_RAY + pair); }
 
 // Where in its pixel sample `index` of `spp` lies: the centre when there is but one.
 vec2 film_offset(uint seed, uvec2 pixel, uint index, uint spp) {

@@ -179,10 +179,14 @@
 //   4: fog: anisotropy, 0, 0, 0
 #define GLOBAL_WORDS 5
 
-// Camera: what is not in render_args; a single word where no effect calls for it.
-//   from CAMERA_FILTER: the film filter's knots, four to a word (render/filter_table.h)
-#define CAMERA_FILTER 0
-#define CAMERA_WORDS (CAMERA_FILTER + FILTER_KNOTS / 4)
+// Camera: what is not in render_args (render/camera.h), in device units; a single word where no effect calls for it.
+//   0: travel.xyz, lens      1: aim, 0, 0, 0
+//   from CAMERA_FILTER_WORD: the film filter's knots, four to a word (render/filter_table.h)
+//   from CAMERA_FRAMES_WORD: CAMERA_FRAMES + 1 frames of three words: corner.xyz, 0    du.xyz, 0    dv.xyz, 0
+#define CAMERA_FRAMES 64
+#define CAMERA_FILTER_WORD 2
+#define CAMERA_FRAMES_WORD (CAMERA_FILTER_WORD + FILTER_KNOTS / 4)
+#define CAMERA_WORDS (CAMERA_FRAMES_WORD + 3 * (CAMERA_FRAMES + 1))
 
 // Knots of a film filter: FILTER_CELLS = 2^FILTER_CELL_BITS to each halving of the distance from 0, down to 2^-24.
 #define FILTER_CELL_BITS 5

@@ -204,6 +204,13 @@ static void test_variables(void **state) {
         {0, "refine_sphere", "l f c"},
         {0, "loses_bits", "part rest scaled unscaled"},
         {1, "leave_robust", "start away"},
+        {1, "camera_between", "way part at"},
+        {1, "camera_position", "part at"},
+        {1, "camera_direction", "to_pixel within direction"},
+        {1, "camera_lens_point", "scaled at"},
+        {1, "camera_inverse", "inverse rest"},
+        {1, "camera_disk_point", "turn t sine cosine point"},
+        {1, "filter_offset", "width part offset mirrored"},
     };
     struct module modules[COUNT(KERNELS)];
     for (size_t i = 0; i < COUNT(KERNELS); ++i) module_read(&modules[i], KERNELS[i]);

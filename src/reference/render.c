@@ -5,6 +5,7 @@
 #include "reference/reference.h"
 #include "reference/sampler.h"
 #include "reference/shade.h"
+#include "render/base.h"
 #include "render/camera.h"
 #include "render/filter_table.h"
 
@@ -45,17 +46,40 @@ static void add_surface(struct pixel *pixel, const struct ref_ray *ray, const st
     pixel->hits++;
 }
 
-static void add_sample(struct pixel *pixel, const struct picture *picture, uint32_t x, uint32_t y, uint32_t sample) {
+static struct camera_sample draw_sample(const struct picture *picture, uint32_t x, uint32_t y, uint32_t number) {
     const struct reference_params *params = picture->params;
-    float offset[2] = {0.5f, 0.5f};
-    if (params->effects & EFFECT_ANTIALIASING) sampler_film(offset, params->independent_samples, params->seed, x, y, sample, params->spp);
-    if (params->effects & EFFECT_FILTER) filter_table_offset(offset, &picture->filter);
-    struct gn_ray from = camera_ray(&picture->camera, x, y, offset);
+    const struct draws draws = {.seed = params->seed, .x = x, .y = y, .number = number, .independent = params->independent_samples};
+    struct camera_sample sample = {.offset = {0.5f, 0.5f}};
+    if (params->effects & EFFECT_ANTIALIASING) sampler_film(sample.offset, params->independent_samples, params->seed, x, y, number, params->spp);
+    if (params->effects & EFFECT_FILTER) filter_table_offset(sample.offset, &picture->filter);
+    float u[2];
+    if (params->effects & EFFECT_DEPTH_OF_FIELD) {
+        sampler_draw(u, &draws, SAMPLER_PAIR_LENS);
+        camera_disk_point(sample.lens, u);
+    }
+    if (params->effects & EFFECT_MOTION_BLUR) {
+        sampler_draw(u, &draws, SAMPLER_PAIR_TIME);
+        sample.time = u[0];
+    }
+    return sample;
+}
+
+// The origin's sum is exact but for components a billion times smaller than the base, which fp64 rounds.
+static bool make_ray(struct ref_ray *out, const struct picture *picture, uint32_t x, uint32_t y, uint32_t number) {
+    const struct camera_sample sample = draw_sample(picture, x, y, number);
+    const struct gn_ray from = camera_ray(&picture->camera, x, y, &sample);
+    if (!ref_ray_make(out, &from)) return false;
+    out->time = sample.time;
+    for (int i = 0; i < 3; i++) out->o[i] += picture->camera.base[i];
+    return true;
+}
+
+static void add_sample(struct pixel *pixel, const struct picture *picture, uint32_t x, uint32_t y, uint32_t sample) {
     struct ref_ray ray;
     struct crossing crossing;
     double color[3] = {picture->scene->background[0], picture->scene->background[1], picture->scene->background[2]};
     pixel->rays++;
-    if (ref_ray_make(&ray, &from) && closest_hit(&crossing, &picture->world, &ray)) {
+    if (make_ray(&ray, picture, x, y, sample) && closest_hit(&crossing, &picture->world, &ray)) {
         struct surface surface = surface_at(&picture->world, &ray, &crossing);
         shade(color, &pixel->rays, &picture->world, &surface);
         add_surface(pixel, &ray, &surface);
@@ -113,7 +137,10 @@ bool reference_render(struct reference_film *out, struct context *ctx, const str
     if (!film_init(out, ctx, params)) goto fail;
     struct picture picture = {.film = out, .scene = scene, .params = params};
     picture.world = ref_world_make(scene, bvh, params->effects);
-    picture.camera = camera_rays_make(&scene->camera, params->width, params->height);
+    float base[3];
+    scene_base(base, scene, scene->camera.position);
+    camera_rays_make(&picture.camera, &scene->camera, params->width, params->height);
+    camera_rays_rebase(&picture.camera, base);
     filter_table_make(&picture.filter, scene->film.filter, scene->film.filter_radius);
     size_t grain = CHUNK_SAMPLES / params->spp;
     if (!parallel_for_progress(ctx, "reference", (size_t)out->color.width * out->color.height, grain, render_some, &picture)) goto fail;

@@ -49,10 +49,18 @@ void sampler_independent_bits(uint32_t bits[2], uint32_t seed, uint32_t x, uint3
     bits[1] = hash_pair(key, 1);
 }
 
-void sampler_film(float offset[2], bool independent, uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t spp) {
-    offset[0] = offset[1] = 0.5f;
-    if (spp == 1) return;
+void sampler_draw(float u[2], const struct draws *draws, uint32_t pair) {
     uint32_t bits[2];
-    (independent ? sampler_independent_bits : sampler_bits)(bits, seed, x, y, index, SAMPLER_PAIR_FILM);
-    for (int i = 0; i < 2; i++) offset[i] = (float)(bits[i] >> 8) * 0x1p-24f;
+    (draws->independent ? sampler_independent_bits : sampler_bits)(bits, draws->seed, draws->x, draws->y, draws->number, pair);
+    for (int i = 0; i < 2; i++) u[i] = (float)(bits[i] >> 8) * 0x1p-24f;
+}
+
+void sampler_draw_of_ray(float u[2], const struct draws *draws, uint32_t depth, uint32_t pair) {
+    sampler_draw(u, draws, SAMPLER_PAIR_PATH + depth * SAMPLER_PAIRS_OF_A_RAY + pair);
+}
+
+void sampler_film(float offset[2], bool independent, uint32_t seed, uint32_t x, uint32_t y, uint32_t index, uint32_t spp) {
+    const struct draws draws = {.seed = seed, .x = x, .y = y, .number = index, .independent = independent};
+    offset[0] = offset[1] = 0.5f;
+    if (spp > 1) sampler_draw(offset, &draws, SAMPLER_PAIR_FILM);
 }

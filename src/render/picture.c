@@ -24,6 +24,7 @@ struct pass {
     struct device_scene ds;
     struct storage_image film, residue, shade, id;
     struct buffer status, camera;
+    struct camera_rays camera_rays;
     struct kernel_specialization specialization;
     struct kernel_binding bindings[BINDING_COUNT];
     size_t binding_count;
@@ -94,14 +95,14 @@ static vec4 vec4_of(const float v[3], float w) { return (vec4){v[0], v[1], v[2],
 
 static void make_args(struct pass *p, const struct scene *scene) {
     const struct render_params *params = p->params;
-    struct camera_rays camera = camera_rays_make(&scene->camera, params->width, params->height);
+    const struct camera_frame *frame = &p->camera_rays.frames[0];
     float position[3];
-    device_point(position, &p->ds, camera.position);
+    device_point(position, &p->ds, scene->camera.position);
     p->args = (struct render_args){
         .position = vec4_of(position, 0),
-        .corner = vec4_of(camera.corner, 1.0f / p->ds.scale),
-        .du = vec4_of(camera.du, 0),
-        .dv = vec4_of(camera.dv, 0),
+        .corner = vec4_of(frame->corner, 1.0f / p->ds.scale),
+        .du = vec4_of(frame->du, 0),
+        .dv = vec4_of(frame->dv, 0),
         .width = p->width,
         .height = p->height,
         .spp = params->spp,
@@ -283,7 +284,9 @@ static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh
     double start = clock_seconds();
     if (!device_scene_init(&p->ds, p->ctx, p->device, scene, bvh, p->params->effects, scene->camera.position, true)) return false;
     if (!make_film(p) || !make_status(&p->status, p->ctx, p->device)) return false;
-    if (!upload_camera(&p->camera, p->ctx, p->device, scene, p->params->effects)) return false;
+    camera_rays_make(&p->camera_rays, &scene->camera, p->params->width, p->params->height);
+    const struct upload_camera_params camera = {&p->camera_rays, &scene->film, p->ds.scale, p->params->effects};
+    if (!upload_camera(&p->camera, p->ctx, p->device, &camera)) return false;
     if (!pending_init(&p->pending, p->ctx, p->device, p->params->tier == TIER_EXACT)) return false;
     out->upload_ms = clock_ms_since(start);
     start = clock_seconds();

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/threads.h"
+#include "render/base.h"
 #include "render/upload_lights.h"
 #include "scene/area_lights.h"
 
@@ -43,23 +44,6 @@ static struct word4 corner_of(const struct upload *u, const float v[3], double s
     return word4_of(p, last);
 }
 
-// Where the geometry lies along an axis, or 0. It is not 0 where the extent is at most the distance from the origin: all coordinates are then multiples of
-// the nearer bound's ulp, the base, too, and their differences no larger than that bound, so that they are exact (cf. Sterbenz).
-static float axis_base(float low, float high) {
-    double near = fmin(fabs((double)low), fabs((double)high)), extent = (double)high - low;
-    if (!(low > 0 || high < 0) || !(extent <= near) || !isfinite(extent)) return 0;
-    return (float)(0.5 * ((double)low + high));
-}
-
-static bool is_exact_difference(float a, float b) { return (double)(float)((double)a - b) == (double)a - b; }
-
-static void find_base(float base[3], const struct scene *scene, const float *eye) {
-    for (int i = 0; i < 3; i++) {
-        base[i] = axis_base(scene->bounds_min[i], scene->bounds_max[i]);
-        if (eye && !is_exact_difference(eye[i], base[i])) base[i] = 0;
-    }
-}
-
 // The power of two that brings the largest coordinate, relative to the base, into [1, 2).
 static float find_scale(const struct scene *scene, const float base[3]) {
     double largest = 0;
@@ -78,7 +62,7 @@ static bool is_sphere(const struct upload *u, uint32_t primitive) { return primi
 
 static bool upload_init(struct upload *u, struct context *ctx, const struct scene *scene, const struct bvh *bvh, uint32_t effects, const float *eye) {
     *u = (struct upload){.scene = scene, .bvh = bvh, .effects = effects};
-    find_base(u->base, scene, eye);
+    scene_base(u->base, scene, eye);
     u->scale = find_scale(scene, u->base);
     u->triangle_count = scene_triangle_count(scene);
     u->sphere_count = scene_sphere_count(scene);

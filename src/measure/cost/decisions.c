@@ -49,16 +49,17 @@ static bool batch_init(struct batch *out, const struct cost_bench *bench, size_t
 static void aim_from_camera(struct batch *batch, const struct cost *cost) {
     const struct cost_params *params = &cost->params;
     const struct lattice *lattice = &cost->targets[COST_CENTRES].lattice;
-    const struct camera_rays camera = camera_rays_make(&batch->bench->scene->camera, params->width, params->height);
+    struct camera_rays camera;
+    camera_rays_make(&camera, &batch->bench->scene->camera, params->width, params->height);
     uint32_t across = lattice_side(params->width, lattice->x, lattice->stride);
     uint32_t down = lattice_side(params->height, lattice->y, lattice->stride);
     for (size_t i = 0; i < batch->camera_count; i++) {
         size_t pixel = i % ((size_t)across * down);
         uint32_t sample = (uint32_t)(i / ((size_t)across * down));
         uint32_t x = lattice->x + lattice->stride * (uint32_t)(pixel % across), y = lattice->y + lattice->stride * (uint32_t)(pixel / across);
-        float offset[2];
-        sampler_film(offset, true, params->seed, x, y, sample, sample == 0 ? 1 : 2); // of one sample: the centre
-        batch->rays[i] = camera_ray(&camera, x, y, offset);
+        struct camera_sample from = {.time = 0};
+        sampler_film(from.offset, true, params->seed, x, y, sample, sample == 0 ? 1 : 2); // of one sample: the centre
+        batch->rays[i] = camera_ray(&camera, x, y, &from);
     }
 }
 

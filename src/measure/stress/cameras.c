@@ -83,10 +83,10 @@ static void exact_direction(double out[3], const struct exact_camera *camera, do
 }
 
 // The direction through the middle of a pixel as camera.h defines it.
-static void ray_direction(float out[3], const struct camera_rays *rays, uint32_t x, uint32_t y) {
+static void ray_direction(float out[3], const struct camera_frame *frame, uint32_t x, uint32_t y) {
     for (int k = 0; k < 3; k++) {
-        float to_pixel = (rays->corner[k] + (float)x * rays->du[k]) + (float)y * rays->dv[k];
-        out[k] = to_pixel + (0.5f * rays->du[k] + 0.5f * rays->dv[k]);
+        float to_pixel = (frame->corner[k] + (float)x * frame->du[k]) + (float)y * frame->dv[k];
+        out[k] = to_pixel + (0.5f * frame->du[k] + 0.5f * frame->dv[k]);
     }
 }
 
@@ -94,7 +94,8 @@ enum { WIDTH = 640, HEIGHT = 480 };
 
 // The largest error of a pixel's direction, in pixels, over a grid of pixels.
 static double worst_pixel(const struct scene_camera *camera) {
-    struct camera_rays rays = camera_rays_make(camera, WIDTH, HEIGHT);
+    struct camera_rays rays;
+    camera_rays_make(&rays, camera, WIDTH, HEIGHT);
     struct exact_camera exact;
     double worst = 0;
     exact_camera_make(&exact, camera);
@@ -104,7 +105,7 @@ static double worst_pixel(const struct scene_camera *camera) {
             double right[3], off = 0;
             float got[3];
             exact_direction(right, &exact, (x + 0.5 - 0.5 * WIDTH) / (0.5 * HEIGHT), (0.5 * HEIGHT - y - 0.5) / (0.5 * HEIGHT));
-            ray_direction(got, &rays, x, y);
+            ray_direction(got, &rays.frames[0], x, y);
             for (int k = 0; k < 3; k++) off = fmax(off, fabs(got[k] - right[k]));
             worst = isfinite(off) ? fmax(worst, off / pixel) : INFINITY;
         }
@@ -159,12 +160,12 @@ bool cameras_narrow(struct stress *s) {
 static double dot(const float a[3], const float b[3]) { return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2]; }
 
 // Whether du, dv and the middle ray are at right angles and of the right lengths.
-static bool is_upright(const struct camera_rays *rays, double pixel) {
+static bool is_upright(const struct camera_frame *frame, double pixel) {
     float middle[3];
-    for (int k = 0; k < 3; k++) middle[k] = (rays->corner[k] + (float)WIDTH / 2 * rays->du[k]) + (float)HEIGHT / 2 * rays->dv[k];
-    return fabs(dot(rays->du, rays->dv)) <= 1e-6 * pixel * pixel && fabs(dot(rays->du, middle)) <= 1e-6 * pixel &&
-           fabs(dot(rays->dv, middle)) <= 1e-6 * pixel && fabs(dot(middle, middle) - 1) <= 1e-5 &&
-           fabs(dot(rays->du, rays->du) / (pixel * pixel) - 1) <= 1e-5 && fabs(dot(rays->dv, rays->dv) / (pixel * pixel) - 1) <= 1e-5;
+    for (int k = 0; k < 3; k++) middle[k] = (frame->corner[k] + (float)WIDTH / 2 * frame->du[k]) + (float)HEIGHT / 2 * frame->dv[k];
+    return fabs(dot(frame->du, frame->dv)) <= 1e-6 * pixel * pixel && fabs(dot(frame->du, middle)) <= 1e-6 * pixel &&
+           fabs(dot(frame->dv, middle)) <= 1e-6 * pixel && fabs(dot(middle, middle) - 1) <= 1e-5 &&
+           fabs(dot(frame->du, frame->du) / (pixel * pixel) - 1) <= 1e-5 && fabs(dot(frame->dv, frame->dv) / (pixel * pixel) - 1) <= 1e-5;
 }
 
 // C04: up along the view, exactly, against it, and nearly. Whatever is chosen instead is a camera.
@@ -181,9 +182,10 @@ bool cameras_up_along_view(struct stress *s) {
             camera.up[k] = camera.look_at[k] * (i % 2 ? 1 : -1) * (i % 3 ? 1 : 1e10f);
             if (i % 5 == 4) camera.up[k] = random_ulps(&s->random, camera.up[k], 3);
         }
-        struct camera_rays rays = camera_rays_make(&camera, WIDTH, HEIGHT);
+        struct camera_rays rays;
+        camera_rays_make(&rays, &camera, WIDTH, HEIGHT);
         tally.rays++;
-        if (!is_upright(&rays, pixel))
+        if (!is_upright(&rays.frames[0], pixel))
             tally_wrong(&tally, "view (%a, %a, %a), up (%a, %a, %a)", view[0], view[1], view[2], camera.up[0], camera.up[1], camera.up[2]);
     }
     tally_every(s, &tally);
