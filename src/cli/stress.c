@@ -41,20 +41,21 @@ static json_t *as_json(struct run *run, const struct gn_stress *stress, const st
 static void print_head(const struct gn_stress_result *row, uint32_t tiers) {
     printf("%-5s %9s", "CASE", "RAYS");
     for (uint32_t i = 0; i < tiers; i++) printf(" %9s", row[i].accuracy);
-    printf(tiers > 1 ? "   TIME, OF FAST\n" : "\n");
+    printf(tiers > 1 ? "  TIMES AS LONG AS %s\n" : "\n", row[0].accuracy);
 }
 
-// "1.0 1.1 5.2": the tiers' times as multiples of the first one's, where that was measured.
-static void times_of(char *text, size_t capacity, const struct gn_stress_result *row, uint32_t tiers) {
-    int used = 0;
-    *text = 0;
-    for (uint32_t i = 1; i < tiers && row->ms > 0 && (size_t)used < capacity; i++)
-        used += snprintf(text + used, capacity - (size_t)used, "%s%.3g", i > 1 ? " " : "", row[i].ms / row->ms);
+// "  1.0   1.1   5.2": the tiers' times as multiples of the first one's, where that was measured; as wide where it was not.
+static void print_times(const struct gn_stress_result *row, uint32_t tiers) {
+    for (uint32_t i = 1; i < tiers; i++) {
+        if (row->ms > 0)
+            printf(" %5.1f", row[i].ms / row->ms);
+        else
+            printf("      ");
+    }
 }
 
 // One line for a case: what each tier got wrong. '!' marks what is more than is known of the tier; its note follows, with -v every note.
 static void print_row(const struct run *run, const struct gn_stress_result *row, uint32_t tiers) {
-    char times[80];
     uint64_t rays = 0;
     bool waits = true;
     for (uint32_t i = 0; i < tiers; i++) rays = row[i].rays > rays ? row[i].rays : rays, waits = waits && row[i].waits;
@@ -68,8 +69,8 @@ static void print_row(const struct run *run, const struct gn_stress_result *row,
         if (row[i].rays) snprintf(count, sizeof count, "%s%" PRIu64, row[i].pass ? "" : "!", row[i].wrong);
         printf(" %9s", count);
     }
-    times_of(times, sizeof times, row, tiers);
-    printf("   %-15s %s\n", times, row->text);
+    print_times(row, tiers);
+    printf("  %s\n", row->text);
     for (uint32_t i = 0; i < tiers; i++)
         if (*row[i].note && (!row[i].pass || run->settings.verbose > 0)) printf("      %s: %s\n", row[i].accuracy, row[i].note);
 }
