@@ -27,7 +27,7 @@ struct plot {
     const struct chart *chart;
     double time_low, time_high, error_low, error_high; // decades of the errors are whole
     bool has_zero;
-    struct box taken[4 * CHART_MOST_POINTS + 1]; // by dots, their spreads and labels, and the front
+    struct box taken[5 * CHART_MOST_POINTS + 4]; // by dots, their spreads and labels, the front and the level
     size_t taken_count;
 };
 
@@ -110,20 +110,30 @@ static void draw_error_axis(const struct plot *plot) {
             plot->chart->error_name);
 }
 
-static void draw_level(const struct plot *plot) {
+// ---------------------------------------------------------------------------------------------------------- what is taken
+
+static size_t text_length(const char *text) {
+    size_t length = 0;
+    for (; *text; text++) length += ((unsigned char)*text & 0xc0) != 0x80;
+    return length;
+}
+
+// A line across or down, or a text, that labels should not lie on.
+static void take(struct plot *plot, double x0, double y0, double x1, double y1) {
+    plot->taken[plot->taken_count++] = (struct box){x0 - 1.5, y0 - 1.5, x1 + 1.5, y1 + 1.5};
+}
+
+static void draw_level(struct plot *plot) {
     if (!(plot->chart->level > 0)) return;
-    double y = y_of(plot, plot->chart->level);
-    fprintf(plot->to, "<path class=\"level\" d=\"M%.1f %.1fH%.1f\" />", LEFT, y, WIDTH - RIGHT);
-    fprintf(plot->to, "<text class=\"level\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n", WIDTH - RIGHT - 4, y - 5,
+    double y = y_of(plot, plot->chart->level), right = WIDTH - RIGHT;
+    fprintf(plot->to, "<path class=\"level\" d=\"M%.1f %.1fH%.1f\" />", LEFT, y, right);
+    fprintf(plot->to, "<text class=\"level\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n", right - 4, y - 5,
             plot->chart->level_label);
+    take(plot, LEFT, y, right, y);
+    take(plot, right - 4 - GLYPH * (double)text_length(plot->chart->level_label), y - LINE, right, y);
 }
 
 // --------------------------------------------------------------------------------------------------------------- points
-
-// A line from left to right that labels should not lie on.
-static void take(struct plot *plot, double x0, double y0, double x1, double y1) {
-    plot->taken[plot->taken_count++] = (struct box){x0, y0 - 1.5, x1, y1 + 1.5};
-}
 
 // The stairs below which nothing was found: from each point of the front to the right, then down to the next.
 static void draw_front(struct plot *plot) {
@@ -147,6 +157,7 @@ static void draw_front(struct plot *plot) {
         else
             fprintf(plot->to, "H%.1fV%.1f", x, y);
         if (!first) take(plot, last_x, last_y, x, last_y);
+        take(plot, x, first ? TOP : last_y, x, y);
         last_x = x, last_y = y;
     }
     take(plot, last_x, last_y, WIDTH - RIGHT, last_y);
@@ -177,12 +188,6 @@ static double badness(const struct plot *plot, const struct box *box) {
     for (size_t i = 0; i < plot->taken_count; i++) bad += overlap(box, &plot->taken[i]);
     bad += 100 * (fmax(0, box->x1 - WIDTH) + fmax(0, LEFT - box->x0) + fmax(0, box->y1 - (HEIGHT - BOTTOM)) + fmax(0, -box->y0));
     return bad;
-}
-
-static size_t text_length(const char *text) {
-    size_t length = 0;
-    for (; *text; text++) length += ((unsigned char)*text & 0xc0) != 0x80;
-    return length;
 }
 
 // Beside its dot, at the first place around it that is free, else at the freest.
