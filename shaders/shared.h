@@ -150,9 +150,11 @@
 // TEXELS begins with what codes mean, 256 floats for sRGB and 256 for linear codes.
 #define TEXTURE_WORDS 1
 #define TEXTURE_REPEATS 0u
+#define TEXTURE_CLAMPS 1u
 #define TEXTURE_MIRRORS 2u
 #define TEXTURE_NEAREST 16u
 #define TEXEL_CODE_WORDS 128u
+// Sky texel: 1 word4, and sky row: 1 word4, behind one of the whole picture: width, height, turns, 0. As in scene/sky.h.
 // Light: 4 word4. Points and lengths are in device units, intensities and radiances as the scene has them, directions unit.
 //                0                     1                                         2                            3
 //   point        position, kind        intensity, 1 for inverse square else 0

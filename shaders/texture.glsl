@@ -1,12 +1,12 @@
 // Textures: pictures of 8-bit codes, looked up by texture coordinates. Reads TEXTURES and TEXELS of shared.h.
 //
-// Texel (i, j) has its center at ((i + 1/2)/width, (j + 1/2)/height), v downward. Codes become linear light by a table, right to the last
-// bit, before they are interpolated. Coordinates are fp32 data: what is within 2^-23 of the picture from a texel's center is there, so that
-// a center which fp32 cannot hold gives exactly its texel. Coordinates as large as 1e6 have as few digits of a fraction as fp32 leaves
-// them. No lookup leaves the picture: NaN and infinity count as 0.
+// Texel (i, j) has its center at ((i + 1/2)/width, (j + 1/2)/height), v downward; taps.glsl says what lies between. Codes become linear
+// light by a table, right to the last bit, before they are interpolated. Coordinates as large as 1e6 have as few digits of a fraction as
+// fp32 leaves them.
 #ifndef TEXTURE_GLSL
 #define TEXTURE_GLSL
 #include "math.glsl"
+#include "taps.glsl"
 
 layout(set = 0, binding = BINDING_TEXTURES) uniform usamplerBuffer texture_words;
 layout(set = 0, binding = BINDING_TEXELS) uniform usamplerBuffer texel_words;
@@ -27,33 +27,6 @@ real4 decode_texel(uint texel, bool srgb) {
     uint table = srgb ? 0u : 256u;
     return real4(decode_code(texel & 255u, table), decode_code((texel >> 8) & 255u, table), decode_code((texel >> 16) & 255u, table),
                  decode_code(texel >> 24, 256u));
-}
-
-// The part of a coordinate that counts, in [0, 1].
-real wrap_coordinate(real x, uint wrap) {
-    x = abs(x) < INFINITY ? x : 0.0;
-    real repeated = x - floor(x), within_two = x - 2.0 * floor(0.5 * x);
-    real mirrored = within_two > 1.0 ? 2.0 - within_two : within_two;
-    return wrap == TEXTURE_REPEATS ? repeated : wrap == TEXTURE_MIRRORS ? mirrored : clamp(x, real(0.0), real(1.0));
-}
-
-// Two neighbours along an axis, and the weight of the second.
-struct taps {
-    uint first, second;
-    real weight;
-};
-
-// Between the centers of the first texel and the last, the next one is the other, where the picture repeats, else the same once more.
-taps taps_of(real x, uint size, uint wrap, bool nearest) {
-    precise real place = wrap_coordinate(x, wrap) * real(size);
-    precise real from_center = place - 0.5;
-    real own = min(floor(place), real(size) - 1.0);
-    bool there = nearest || abs(from_center - own) <= 1.5e-7 * real(size);
-    real low = there ? own : floor(from_center);
-    int first = int(low), second = first + 1, last = int(size) - 1;
-    first = first < 0 && wrap == TEXTURE_REPEATS ? last : clamp(first, 0, last);
-    second = second > last && wrap == TEXTURE_REPEATS ? 0 : clamp(second, 0, last);
-    return taps(uint(first), uint(second), there ? 0.0 : from_center - low);
 }
 
 real4 texel_at(uvec4 header, uint x, uint y, bool srgb) {
