@@ -1,15 +1,8 @@
 // Normal maps in tangent space: red is where u grows, green where v falls (up in the picture, as in glTF), blue along the normal.
 #ifndef NORMAL_MAP_GLSL
 #define NORMAL_MAP_GLSL
-#include "math.glsl"
+#include "hemisphere.glsl"
 #include "tier_robust.glsl"
-
-// Some unit vector across the unit vector n. T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
-real3 any_tangent(real3 n) {
-    real side = n.z >= 0.0 ? 1.0 : -1.0;
-    real a = -1.0 / (side + n.z);
-    return real3(1.0 + side * n.x * n.x * a, side * n.x * n.y * a, -side * n.x);
-}
 
 // The normal that a texel (three linear values, 0 to 1) makes of the unit normal n of a triangle with the edges e1, e2 and what the texture
 // coordinates change along them. For a surface seen from its back, n is the front's, and the result is turned. Where the coordinates have
@@ -17,10 +10,12 @@ real3 any_tangent(real3 n) {
 real3 map_normal(real3 n, real3 e1, real3 e2, real2 duv1, real2 duv2, real3 texel, real scale) {
     real area = duv1.x * duv2.y - duv1.y * duv2.x;
     real3 right = (e1 * duv2.y - e2 * duv1.y) * sign(area), up = (e1 * duv2.x - e2 * duv1.x) * sign(area); // ∂p/∂u, -∂p/∂v, times the area
-    real3 t = normalize_robust(right);
-    t = normalize_robust(t - n * dot(n, t));
-    t = dot(t, t) > 0.5 ? t : any_tangent(n);
-    real3 b = cross(n, t);
+    real3 t, b;
+    tangents(n, t, b);
+    real3 across = normalize_robust(right);
+    across = normalize_robust(across - n * dot(n, across));
+    t = dot(across, across) > 0.5 ? across : t;
+    b = cross(n, t);
     b = dot(b, up) < 0.0 ? -b : b;
     real3 m = 2.0 * texel - 1.0;
     real3 mapped = normalize_robust(scale * (m.x * t + m.y * b) + m.z * n);
