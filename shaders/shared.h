@@ -217,7 +217,6 @@
 // Flags of a hit, as in gnomon.h.
 #define HIT_INVALID 1u
 #define HIT_UNDECIDED 2u
-#define HIT_OPEN 0x80000000u        // not decided yet: a later stage's; never leaves the program
 
 // Stress kernels: functions of stress_numbers.comp, and numbers in and out of an invocation.
 #define STRESS_POWER 0u             // x, y
@@ -292,7 +291,7 @@ struct trace_args {
     vec4 base;              // xyz and w as base and scale in render/upload.h
     uint first, count;      // rays
     uint root;              // reference of the root
-    uint list_first;        // exact tier: entries of BINDING_LIST that earlier dispatches have filled
+    uint list_first;        // exact tier: where the list of BINDING_LIST goes on
 };
 
 // One dispatch of a stress_*.comp, which reads numbers at BINDING_RAYS and writes numbers at BINDING_HITS.

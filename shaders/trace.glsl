@@ -59,7 +59,7 @@ bool refine(ray r, inout hit h) {
     } else {
         uint at = TRIANGLE_WORDS * h.primitive;
         vec3 v0 = uintBitsToFloat(triangle_word(at).xyz), v1 = uintBitsToFloat(triangle_word(at + 1u).xyz);
-        fine = refine_triangle(o, d, v0, v1, uintBitsToFloat(triangle_word(at + 2u).xyz), tuv);
+        fine = refine_triangle(o, d, v0, v1, uintBitsToFloat(triangle_word(at + 2u).xyz), double(h.t), tuv);
     }
     h.t = real(tuv.x);
     h.u = real(tuv.y);
@@ -84,9 +84,7 @@ bool find_ray(out uint number) {
 // Counts an undecided ray and writes its number down for the next stage.
 void list_undecided(uint number) {
     uint place = atomicAdd(dispatch_status.undecided, 1u);
-#ifndef LISTED
     if (TIER == TIER_EXACT) undecided_rays[args.list_first + place] = number;
-#endif
 }
 
 void main() {
@@ -119,7 +117,7 @@ void main() {
         t = float(INFINITY);
     }
     if (ANY_HIT && h.object >= 0) h.object = 0;
-    store_hit(number, t, h, (valid ? 0u : HIT_INVALID) | (undecided ? HIT_UNDECIDED | HIT_OPEN : EARLIER));
+    store_hit(number, t, h, (valid ? 0u : HIT_INVALID) | (undecided ? HIT_UNDECIDED : EARLIER));
     if (undecided) list_undecided(number);
     if (h.object >= 0) atomicAdd(dispatch_status.hits, 1u);
     if (steps <= 0) atomicAdd(dispatch_status.stuck, 1u);

@@ -200,7 +200,7 @@ static void test_variables(void **state) {
         {0, "sphere_exact", "l r2a f"},
         {0, "sphere_exact_again", "l"},
         {0, "sphere_robust", "l f c"},
-        {0, "refine_triangle", "a b c e01 e12 e20"},
+        {0, "refine_triangle", "e1 e2 from origin_again p0_again start moved sum"},
         {0, "refine_sphere", "l f c"},
         {0, "loses_bits", "part rest scaled unscaled"},
         {1, "leave_robust", "start away"},
