@@ -41,17 +41,15 @@ void consider(inout search q, ray r, hit c) {
     }
 }
 
-// A crossing in the exact tier. The bounds of the ray are sharp, save that a product with a power of two may have lost a denormal's bits.
+// A crossing in the exact tier.
 void consider_verdict(inout search q, ray r, verdict c, hit candidate) {
-    const real lost = 7.7e-34; // 2^-110
-    bool possible = c.hi > r.tmin - lost && c.lo < r.tmax + lost && c.lo <= q.hi && c.lo <= c.hi;
-    bool inside = c.certain && c.lo > r.tmin + lost && c.hi < r.tmax - lost;
-    if (possible && inside && c.hi < q.lo) {
+    bool possible = c.hi > r.tmin && c.lo < r.tmax && c.lo <= q.hi;
+    bool closer = c.certain && c.lo > r.tmin && c.hi < r.tmax && c.hi < q.lo;
+    if (possible && !closer && c.lo < q.maybe) q.maybe = c.lo;
+    if (closer) {
         q.best = candidate;
         q.lo = c.lo;
         q.hi = c.hi;
-    } else if (possible) {
-        q.maybe = min(q.maybe, c.lo);
     }
 }
 
