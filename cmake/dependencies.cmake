@@ -3,7 +3,7 @@
 # Read by our own build, and installed beside gnomonConfig.cmake: who links the static library needs them again.
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
-set(GNOMON_MODULES vulkan jansson spng assimp gmp mpfr)
+set(GNOMON_MODULES vulkan jansson spng libturbojpeg assimp gmp mpfr)
 pkg_check_modules(GNOMON_MODULES REQUIRED IMPORTED_TARGET ${GNOMON_MODULES})
 
 # Not through OpenEXR's own CMake package or pkg-config file: they ask for Imath, Python bindings and the C++ libraries,

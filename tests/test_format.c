@@ -2,6 +2,7 @@
 #include "scratch.h"
 
 #include <math.h>
+#include <spng.h>
 
 #include "scene/scene.h"
 
@@ -9,7 +10,29 @@
 #define TINTED "mtllib t.mtl\nusemtl t\n" QUAD
 #define LIBRARY "newmtl t\nKd 1 0 0\n"
 
+// A picture of 2 × 1 pixels: red, and half transparent blue-ish.
+static void write_png(const char *name) {
+    static const unsigned char pixels[8] = {255, 0, 0, 255, 10, 20, 200, 128};
+    spng_ctx *png = spng_ctx_new(SPNG_CTX_ENCODER);
+    struct spng_ihdr ihdr = {.width = 2, .height = 1, .bit_depth = 8, .color_type = SPNG_COLOR_TYPE_TRUECOLOR_ALPHA};
+    size_t size;
+    int error;
+    assert_int_equal(spng_set_option(png, SPNG_ENCODE_TO_BUFFER, 1), 0);
+    assert_int_equal(spng_set_ihdr(png, &ihdr), 0);
+    assert_int_equal(spng_encode_image(png, pixels, sizeof pixels, SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE), 0);
+    void *bytes = spng_get_png_buffer(png, &size, &error);
+    scratch_file(name, bytes, size);
+    free(bytes);
+    spng_ctx_free(png);
+}
+
+#define HDR "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x81\x00\xff\x00\x80" // (1, 0.5, 0.25), (0, 0.996, 0)
+
 static void helpers(void) {
+    write_png("a.png");
+    scratch_file("sky.hdr", HDR, sizeof HDR - 1);
+    scratch_file("cut.hdr", HDR, sizeof HDR - 2);
+    scratch_file("text.png", "hello", 5);
     scratch_file("quad.obj", QUAD, strlen(QUAD));
     scratch_file("tinted.obj", TINTED, strlen(TINTED));
     scratch_file("t.mtl", LIBRARY, strlen(LIBRARY));
@@ -128,6 +151,87 @@ static void materials_have_models(void **state) {
     scene_finish(&s);
 }
 
+static void materials_have_maps(void **state) {
+    (void)state;
+    helpers();
+    struct scene s =
+        load("\"materials\": {\"a\": {\"diffuse_map\": \"a.png\", \"normal_map\": {\"file\": \"a.png\", \"scale\": -0.5}},"
+             "\"b\": {\"model\": \"metallic_roughness\", \"diffuse\": [0.5,0.5,0.5], \"roughness_map\": {\"file\": \"a.png\"}, "
+             "\"diffuse_map\": {\"file\": \"a.png\", "
+             "\"wrap\": [\"mirror\", \"clamp\"], \"filter\": \"nearest\", \"encoding\": \"linear\", \"transform\": [[2,0,0.5],[0,3,1]]}},"
+             "\"c\": {\"emission_map\": \"sky.hdr\", \"diffuse_map\": {\"file\": \"sky.hdr\", \"encoding\": \"linear\"}, \"diffuse\": "
+             "[0,0,0]}}");
+    const struct scene_material *m = s.materials;
+    const struct scene_texture *t = s.textures;
+    assert_int_equal(s.texture_count, 5); // of a.png color, others, another lookup; of sky.hdr two encodings
+    assert_float3(m[0].diffuse, 1, 1, 1);
+    assert_float3(m[0].ambient, 1, 1, 1);
+    assert_float3(m[0].emission, 0, 0, 0);
+    assert_true(m[0].diffuse_map.texture == 1 && m[0].diffuse_map.srgb && m[0].normal_scale == -0.5f);
+    assert_true(m[0].normal_map.texture == 2 && !m[0].normal_map.srgb);
+    static const uint8_t codes[8] = {255, 0, 0, 255, 10, 20, 200, 128};
+    assert_true(t[0].width == 2 && t[0].height == 1 && t[0].wrap_u == WRAP_REPEAT && !t[0].nearest && strstr(t[0].name, "/a.png"));
+    assert_memory_equal(t[0].texels, codes, sizeof codes);
+    assert_memory_equal(t[1].texels, codes, sizeof codes);
+    assert_float3(m[1].diffuse, 0.5, 0.5, 0.5);
+    assert_true(m[1].metallic == 1 && m[1].roughness == 1 && m[1].roughness_map.texture == 2 && !m[1].diffuse_map.srgb);
+    const struct scene_texture *other = &t[m[1].diffuse_map.texture - 1];
+    assert_true(other->wrap_u == WRAP_MIRROR && other->wrap_v == WRAP_CLAMP && other->nearest);
+    assert_memory_equal(other->texels, codes, sizeof codes);
+    static const float transform[6] = {2, 0, 0.5f, 0, 3, 1};
+    assert_memory_equal(m[1].diffuse_map.transform, transform, sizeof transform);
+    assert_float3(m[2].diffuse, 0, 0, 0);
+    assert_float3(m[2].emission, 1, 1, 1);
+    assert_int_equal(t[m[2].emission_map.texture - 1].texels[1], 188); // 0.5
+    assert_int_equal(t[m[2].diffuse_map.texture - 1].texels[1], 128);
+    scene_finish(&s);
+}
+
+// The textures of a model are the scene's, too, unless the shape has a material of its own.
+static void models_bring_their_textures(void **state) {
+    (void)state;
+    static const char library[] = "newmtl t\nmap_Kd a.png\nnewmtl u\nmap_Kd a.png\nmap_Ke sky.hdr\n",
+                      object[] = "mtllib lib.mtl\n" QUAD "vt 0 0\nusemtl u\nf 1/1 2/1 3/1\nusemtl t\nf 1/1 2/1 4/1\n";
+    helpers();
+    scratch_file("lib.mtl", library, sizeof library - 1);
+    scratch_file("textured.obj", object, sizeof object - 1);
+    struct scene s =
+        load("\"materials\": {\"sky\": {\"diffuse_map\": \"sky.hdr\"}}, \"shapes\": [{\"type\": \"mesh\", \"file\": \"textured.obj\"},"
+             "{\"type\": \"mesh\", \"file\": \"textured.obj\"}]");
+    assert_int_equal(s.texture_count, 2);
+    assert_non_null(s.shapes[0].mesh.uvs);
+    for (uint32_t i = 1; i < s.material_count; i++) {
+        const struct scene_material *m = &s.materials[i];
+        if (strcmp(m->name, "default") == 0) continue;
+        assert_int_equal(m->diffuse_map.texture, 2);
+        assert_int_equal(m->emission_map.texture, strcmp(m->name, "u") == 0 ? 1 : NO_TEXTURE);
+    }
+    scene_finish(&s);
+    s = load("\"materials\": {\"own\": {}}, \"shapes\": [{\"type\": \"mesh\", \"file\": \"textured.obj\", \"material\": \"own\"}]");
+    assert_int_equal(s.texture_count, 0);
+    assert_null(s.shapes[0].mesh.uvs); // nothing asks for them
+    scene_finish(&s);
+}
+
+static void environments_are_linear(void **state) {
+    (void)state;
+    helpers();
+    struct scene s = load("\"environment\": \"sky.hdr\"");
+    static const float texels[6] = {1, 0.5f, 0.25f, 0, 0x1.fep-1f, 0};
+    assert_true(s.environment.width == 2 && s.environment.height == 1 && s.environment.scale == 1 && s.environment.rotation_deg == 0);
+    assert_memory_equal(s.environment.texels, texels, sizeof texels);
+    scene_finish(&s);
+    s = load("\"environment\": {\"file\": \"a.png\", \"scale\": 3, \"rotation_deg\": -400}");
+    assert_true(s.environment.scale == 3 && s.environment.rotation_deg == -400 && s.environment.texels[0] == 1);
+    scene_finish(&s);
+    static const float odd[6] = {INFINITY, -1, NAN, 7, -INFINITY, 0}, sound[6] = {7, 0, 0, 7, 0, 0};
+    const struct image image = {.width = 2, .height = 1, .channels = 3, .pixels = (float *)odd};
+    scratch_assert(image_write_pfm(&image, scratch_context(), scratch_path("odd.pfm")));
+    s = load("\"environment\": \"odd.pfm\"");
+    assert_memory_equal(s.environment.texels, sound, sizeof sound);
+    scene_finish(&s);
+}
+
 // ------------------------------------------------------------------------------------------------------------------- lights
 
 static void lights_have_types(void **state) {
@@ -148,9 +252,12 @@ static void lights_have_types(void **state) {
 
 // ------------------------------------------------------------------------------------------------------------------- shapes
 
+#define TEXTURED "\"materials\": {\"t\": {\"diffuse_map\": \"a.png\"}}, " // else nothing needs texture coordinates
+
 static void rectangles_are_two_triangles(void **state) {
     (void)state;
-    struct scene s = load("\"shapes\": [{\"type\": \"rectangle\", \"corner\": [1,0,0], \"edges\": [[0,2,0],[0.1,0,0]]}]");
+    helpers();
+    struct scene s = load(TEXTURED "\"shapes\": [{\"type\": \"rectangle\", \"corner\": [1,0,0], \"edges\": [[0,2,0],[0.1,0,0]]}]");
     const struct scene_mesh *mesh = &s.shapes[0].mesh;
     assert_true(s.shapes[0].type == SHAPE_RECTANGLE && mesh->triangle_count == 2 && mesh->vertex_count == 4 && mesh->uvs);
     assert_float3(mesh->positions + 3, 1, 2, 0);
@@ -166,8 +273,10 @@ static void rectangles_are_two_triangles(void **state) {
 
 static void triangles_have_uvs(void **state) {
     (void)state;
-    struct scene s = load("\"shapes\": [{\"type\": \"triangle\", \"vertices\": [[0,0,0],[1,0,0],[0,1,0]], \"uvs\": [[0,0.5],[1,2],[-3,4]]},"
-                          "{\"type\": \"triangle\", \"vertices\": [[0,0,0],[1,0,0],[0,1,0]]}]");
+    helpers();
+    struct scene s =
+        load(TEXTURED "\"shapes\": [{\"type\": \"triangle\", \"vertices\": [[0,0,0],[1,0,0],[0,1,0]], \"uvs\": [[0,0.5],[1,2],[-3,4]]},"
+                      "{\"type\": \"triangle\", \"vertices\": [[0,0,0],[1,0,0],[0,1,0]]}]");
     static const float uvs[] = {0, 0.5f, 1, 2, -3, 4};
     assert_memory_equal(s.shapes[0].mesh.uvs, uvs, sizeof uvs);
     assert_null(s.shapes[1].mesh.uvs);
@@ -194,8 +303,8 @@ static void instances_draw_meshes(void **state) {
         "\"tinted\": {\"file\": \"tinted.obj\", \"normals\": \"smooth\"}, \"green\": {\"file\": \"tinted.obj\", \"material\": \"green\"}},"
         "\"shapes\": [{\"type\": \"instance\", \"mesh\": \"tinted\", \"motion\": [0,0,1], "
         "\"transform\": [[0,-1,0,0.1],[1,0,0,2],[0,0,1,3],[0,0,0,1]]}, {\"type\": \"instance\", \"mesh\": \"plain\", \"material\": "
-        "\"green\"},"
-        "{\"type\": \"instance\", \"mesh\": \"green\"}]");
+        "\"green\", \"motion\": [1,0,0]}, {\"type\": \"instance\", \"mesh\": \"green\", \"motion\": [1,0,0]},"
+        "{\"type\": \"instance\", \"mesh\": \"green\"}]"); // what is drawn once and stands still becomes a mesh
     assert_int_equal(s.prototype_count, 3);
     assert_true(s.prototypes[0].positions[3] == 2 && s.prototypes[1].normals != NULL);
     static const float placement[12] = {0, -1, 0, 0.1f, 1, 0, 0, 2, 0, 0, 1, 3}, identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -282,6 +391,35 @@ static const struct {
      "2:76: shapes[0].motion takes the shape out of the range of fp32, expected smaller numbers"},
     {"\"shapes\": [{" SPHERE ", \"transform\": 1}]",
      "2:63: shapes[0] has a key 'transform', which belongs to \"mesh\", \"instance\", not to \"sphere\""},
+    {"\"environment\": 1", "2:16: environment is 1, expected an object"},
+    {"\"environment\": {\"scale\": 1}", "2:16: environment has no 'file', expected the path of an image"},
+    {"\"environment\": \"none.hdr\"", "2:16: environment is \"none.hdr\", expected a file that can be read: No such file"},
+    {"\"environment\": {\"file\": \"cut.hdr\"}", "2:25: environment.file cannot be used: "},
+    {"\"environment\": {\"file\": \"cut.hdr\"}", "cut.hdr: is not a valid Radiance file: it ends early, or its rows are damaged"},
+    {"\"environment\": {\"file\": \"sky.hdr\", \"scale\": -1}", "2:45: environment.scale is -1, expected a number of at least 0"},
+    {"\"materials\": {\"m\": {\"diffuse_map\": 1}}", "2:36: materials.m.diffuse_map is 1, expected the path of an image, or an object"},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {}}}", "2:36: materials.m.diffuse_map has no 'file', expected the path of an image"},
+    {"\"materials\": {\"m\": {\"diffuse_map\": \"none.png\"}}",
+     "2:36: materials.m.diffuse_map is \"none.png\", expected a file that can be read"},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {\"file\": \"text.png\"}}}", "2:45: materials.m.diffuse_map.file cannot be used: "},
+    {"\"materials\": {\"m\": {\"diffuse_map\": \"text.png\"}}",
+     "text.png: is neither PNG, OpenEXR, JPEG, Radiance (.hdr) nor PFM (5 bytes)"},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {\"file\": \"a.png\", \"scale\": 2}}}",
+     "2:54: materials.m.diffuse_map has a key 'scale', which belongs to \"normal map\", not to \"color map\""},
+    {"\"materials\": {\"m\": {\"normal_map\": {\"file\": \"a.png\", \"encoding\": \"srgb\"}}}",
+     "materials.m.normal_map has a key 'encoding', which belongs to \"color map\", not to \"normal map\""},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {\"file\": \"a.png\", \"wrap\": \"tile\"}}}",
+     "materials.m.diffuse_map.wrap is \"tile\", expected \"repeat\", \"clamp\" or \"mirror\""},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {\"file\": \"a.png\", \"wrap\": [\"clamp\", 1]}}}",
+     "materials.m.diffuse_map.wrap[1] is 1, expected \"repeat\", \"clamp\" or \"mirror\""},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {\"file\": \"a.png\", \"wrap\": [\"clamp\"]}}}",
+     "materials.m.diffuse_map.wrap is a list of 1, expected \"repeat\", \"clamp\" or \"mirror\", or a list of 2 of these"},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {\"file\": \"a.png\", \"filter\": \"cubic\"}}}",
+     "materials.m.diffuse_map.filter is \"cubic\", expected \"linear\" or \"nearest\""},
+    {"\"materials\": {\"m\": {\"diffuse_map\": {\"file\": \"a.png\", \"transform\": [[1,0,0]]}}}",
+     "materials.m.diffuse_map.transform is a list of 1, expected 2 rows of 3 numbers"},
+    {"\"materials\": {\"m\": {\"roughness_map\": \"a.png\"}}",
+     "has a key 'roughness_map', which belongs to \"metallic_roughness\", not to \"phong\""},
     {"\"meshes\": [], \"shapes\": []", "2:11: meshes is a list, expected an object of meshes by name"},
     {"\"meshes\": {\"m\": {\"type\": \"mesh\"}}",
      "2:18: meshes.m has an unknown key 'type', expected one of: file, transform, normals, material"},
@@ -325,6 +463,9 @@ int main(void) {
         cmocka_unit_test(films_have_filters),
         cmocka_unit_test(paths_and_fog_have_defaults),
         cmocka_unit_test(materials_have_models),
+        cmocka_unit_test(materials_have_maps),
+        cmocka_unit_test(models_bring_their_textures),
+        cmocka_unit_test(environments_are_linear),
         cmocka_unit_test(lights_have_types),
         cmocka_unit_test(rectangles_are_two_triangles),
         cmocka_unit_test(triangles_have_uvs),

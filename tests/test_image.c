@@ -1,8 +1,9 @@
-// Images in memory, as PNG and as PFM.
+// Images in memory, as PNG, JPEG, Radiance and PFM.
 #include "image_fixture.h"
 
 #include <math.h>
 #include <spng.h>
+#include <turbojpeg.h>
 
 // ---- memory
 
@@ -284,7 +285,7 @@ static void malformed_pfm_is_refused(void **state) {
     } cases[] = {
         {"PF", "malformed PFM header"},
         {"PF\n", "malformed PFM header"},
-        {"PG\n1 1\n-1\n", "is neither PNG, OpenEXR nor PFM"},
+        {"PG\n1 1\n-1\n", "is neither PNG, OpenEXR, JPEG, Radiance (.hdr) nor PFM"},
         {"PFx\n1 1\n-1\n", "malformed PFM header"},
         {"PF\n1\n", "malformed PFM header"},
         {"PF\n1 1 -1", "malformed PFM header"},
@@ -325,10 +326,161 @@ static void damaged_pfm_does_no_harm(void **state) {
     image_finish(&image);
 }
 
+// ---- Radiance
+
+#define HDR_HEAD "#?RADIANCE\n# by hand\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n"
+
+// Row 0 of 8 pixels in the newer code: red 128 everywhere, green 0 … 7, blue 5 runs and single ones, exponent 129: values m/128.
+#define HDR_ROW "\x02\x02\x00\x08\x88\x80\x08\x00\x01\x02\x03\x04\x05\x06\x07\x85\x40\x03\x01\x02\x03\x88\x81"
+
+static void hdr_is_read(void **state) {
+    (void)state;
+    static const struct {
+        const char *size, *row;
+        size_t row_size;
+        uint32_t width, height, x, y;
+        float red, green, blue;
+    } cases[] = {
+        {"-Y 1 +X 8\n", HDR_ROW, sizeof HDR_ROW - 1, 8, 1, 6, 0, 1, 6 / 128.0f, 2 / 128.0f},
+        {"-Y 1 +X 8\r\n", HDR_ROW, sizeof HDR_ROW - 1, 8, 1, 4, 0, 1, 4 / 128.0f, 0.5f},
+        {"-Y 1 -X 8\n", HDR_ROW, sizeof HDR_ROW - 1, 8, 1, 1, 0, 1, 6 / 128.0f, 2 / 128.0f},
+        // without code, 3 pixels; the last is 0
+        {"-Y 1 +X 3\n", "\x80\x40\x01\x88\x01\x02\x03\x81\x09\x09\x09\x00", 12, 3, 1, 0, 0, 128, 64, 1},
+        {"-Y 1 +X 3\n", "\x80\x40\x01\x88\x01\x02\x03\x81\x09\x09\x09\x00", 12, 3, 1, 2, 0, 0, 0, 0},
+        {"-Y 3 +X 1\n", "\x80\x40\x01\x88\x01\x02\x03\x81\x09\x09\x09\x00", 12, 1, 3, 0, 0, 128, 64, 1},
+        {"+Y 3 +X 1\n", "\x80\x40\x01\x88\x01\x02\x03\x81\x09\x09\x09\x00", 12, 1, 3, 0, 2, 128, 64, 1},
+        // the older code: one pixel, then as many as 2 + 1 · 256 more of it
+        {"-Y 1 +X 259\n", "\x80\x40\x20\x81\x01\x01\x01\x02\x01\x01\x01\x01", 12, 259, 1, 258, 0, 1, 0.5f, 0.25f},
+        // the largest and the smallest values
+        {"-Y 1 +X 1\n", "\xff\x01\x00\xff", 4, 1, 1, 0, 0, 0xffp119f, 0x1p119f, 0},
+        {"-Y 1 +X 1\n", "\xff\x01\x00\x01", 4, 1, 1, 0, 0, 0xffp-135f, 0x1p-135f, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char bytes[256] = HDR_HEAD;
+        struct image image;
+        strcat(bytes, cases[i].size);
+        const size_t size = strlen(bytes);
+        memcpy(bytes + size, cases[i].row, cases[i].row_size);
+        scratch_assert(image_read(&image, scratch_context(), scratch_file("a.hdr", bytes, size + cases[i].row_size)));
+        const float *p = image.pixels + 3 * (cases[i].y * cases[i].width + cases[i].x);
+        if (image.width != cases[i].width || image.height != cases[i].height || p[0] != cases[i].red || p[1] != cases[i].green ||
+            p[2] != cases[i].blue)
+            fail_msg("case %zu: %u × %u, (%g, %g, %g)", i, image.width, image.height, (double)p[0], (double)p[1], (double)p[2]);
+        image_finish(&image);
+    }
+}
+
+static void malformed_hdr_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *bytes, *message;
+    } cases[] = {
+        {"#?", "its header has no end"},
+        {"#?RADIANCE\n\n", "its size is not given as in"},
+        {"#?RADIANCE\n\n+X 1 -Y 1\n", "its size is not given as in"},
+        {"#?RADIANCE\n\n-Y 1 +X 1 x\n", "its size is not given as in"},
+        {"#?RADIANCE\n\n-Y 0 +X 1\n", "announces an empty image"},
+        {"#?RADIANCE\n\n-Y -1 +X 1\n", "the limit is 65536 on a side"},
+        {"#?RADIANCE\n\n-Y 65536 +X 65536\n", "the limit is 65536 on a side"},
+        {"#?RADIANCE\n\n-Y 16384 +X 16384\n", "which cannot be in a file of"},
+        {"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd", "in another FORMAT than 32-bit_rle_rgbe"},
+        {"#?RADIANCE\n\n-Y 1 +X 1\nabc", "it ends early, or its rows are damaged"},
+        {"#?RADIANCE\n\n-Y 1 +X 2\n\1\1\1\2", "it ends early, or its rows are damaged"},     // nothing to repeat
+        {"#?RADIANCE\n\n-Y 1 +X 2\nabcd\1\1\1\2", "it ends early, or its rows are damaged"}, // too often
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_read_fails(scratch_file("a.hdr", cases[i].bytes, strlen(cases[i].bytes)), cases[i].message);
+}
+
+static void damaged_hdr_does_no_harm(void **state) {
+    (void)state;
+    static const char bytes[] = HDR_HEAD "-Y 2 +X 8\n" HDR_ROW HDR_ROW;
+    assert_in_range(damage_file(scratch_file("a.hdr", bytes, sizeof bytes - 1), 1, 1500), 100, 1499);
+}
+
+// ---- JPEG
+
+// A picture in one colour, or a grey ramp, as libjpeg-turbo writes it.
+static const char *write_jpeg(bool grey, int subsampling, int flags) {
+    enum { SIDE = 32 };
+    unsigned char pixels[3 * SIDE * SIDE], *bytes = NULL;
+    unsigned long size = 0;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) pixels[i] = (unsigned char)(grey ? 8 * (i % SIDE) : i % 3 == 0 ? 200 : i % 3 == 1 ? 100 : 20);
+    tjhandle jpeg = tjInitCompress();
+    assert_non_null(jpeg);
+    assert_int_equal(tjCompress2(jpeg, pixels, SIDE, 0, SIDE, grey ? TJPF_GRAY : TJPF_RGB, &bytes, &size, subsampling, 100, flags), 0);
+    const char *path = scratch_file("a.jpg", bytes, size);
+    tjFree(bytes);
+    tjDestroy(jpeg);
+    return path;
+}
+
+static void jpeg_is_read(void **state) {
+    (void)state;
+    static const int subsamplings[] = {TJSAMP_444, TJSAMP_420, TJSAMP_GRAY};
+    for (int i = 0; i < 6; i++) {
+        struct image image;
+        const bool grey = subsamplings[i / 2] == TJSAMP_GRAY;
+        scratch_assert(image_read(&image, scratch_context(), write_jpeg(grey, subsamplings[i / 2], i % 2 ? TJFLAG_PROGRESSIVE : 0)));
+        assert_int_equal(image.width, 32);
+        for (size_t p = 0; p < 32 * 32; p++)
+            for (size_t c = 0; c < 3; c++) {
+                const int code = grey ? 8 * (int)(p % 32) : c == 0 ? 200 : c == 1 ? 100 : 20;
+                assert_in_range(transfer_encode(TRANSFER_SRGB, image.pixels[3 * p + c]), code > 2 ? code - 2 : 0, code + 2);
+            }
+        image_finish(&image);
+    }
+}
+
+static void damaged_jpeg_does_no_harm(void **state) {
+    (void)state;
+    for (int progressive = 0; progressive < 2; progressive++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s", write_jpeg(false, TJSAMP_420, progressive ? TJFLAG_PROGRESSIVE : 0));
+        assert_in_range(damage_file(path, 1, 1000), 100, 999);
+    }
+}
+
+// ---- codes
+
+static void codes_are_those_of_the_file(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof FOREIGN / sizeof *FOREIGN; i++) {
+        struct file_bytes bytes;
+        struct codes codes;
+        if (FOREIGN[i].width != 2) continue;
+        const char *path = write_foreign(&FOREIGN[i]);
+        scratch_assert(file_read(&bytes, scratch_context(), path, GN_IO));
+        scratch_assert(codes_decode(&codes, scratch_context(), path, &bytes, TRANSFER_LINEAR));
+        for (int k = 0; k < 6; k++) {
+            const double expected = FOREIGN[i].expected[k] * 255.0 / FOREIGN[i].full, code = codes.pixels[k + k / 3];
+            if (!(fabs(code - expected) <= 1)) fail_msg("%s, code %d: %g, expected %g", FOREIGN[i].what, k, code, expected);
+        }
+        const bool alpha = FOREIGN[i].color_type & 4;
+        if (codes.pixels[3] != (alpha || FOREIGN[i].transparent ? 0 : 255)) fail_msg("%s: alpha %d", FOREIGN[i].what, codes.pixels[3]);
+        if (!alpha) assert_int_equal(codes.pixels[7], 255);
+        codes_finish(&codes);
+        file_bytes_finish(&bytes);
+    }
+}
+
+static void linear_values_become_codes(void **state) {
+    (void)state;
+    static const char bytes[] = HDR_HEAD "-Y 1 +X 1\n\x40\xff\x00\x81"; // 0.5, 1.99, 0
+    const struct file_bytes file = {.data = (char *)bytes, .size = sizeof bytes - 1};
+    for (int transfer = 0; transfer < 2; transfer++) {
+        struct codes codes;
+        scratch_assert(codes_decode(&codes, scratch_context(), "a.hdr", &file, (enum transfer)transfer));
+        const uint8_t expected[4] = {transfer == TRANSFER_SRGB ? 188 : 128, 255, 0, 255};
+        assert_memory_equal(codes.pixels, expected, 4);
+        codes_finish(&codes);
+    }
+}
+
 static void other_files_are_refused(void **state) {
     (void)state;
-    assert_read_fails(scratch_file("empty", "", 0), "is neither PNG, OpenEXR nor PFM (0 bytes)");
-    assert_read_fails(scratch_file("text", "hello", 5), "is neither PNG, OpenEXR nor PFM (5 bytes)");
+    assert_read_fails(scratch_file("empty", "", 0), "is neither PNG, OpenEXR, JPEG, Radiance (.hdr) nor PFM (0 bytes)");
+    assert_read_fails(scratch_file("text", "hello", 5), "is neither PNG, OpenEXR, JPEG, Radiance (.hdr) nor PFM (5 bytes)");
     assert_read_fails("/nowhere/a.png", "cannot be opened: No such file");
     assert_read_fails("/tmp", "is a directory");
 }
@@ -347,6 +499,13 @@ int main(void) {
         cmocka_unit_test(pfm_of_others_is_read),
         cmocka_unit_test(malformed_pfm_is_refused),
         cmocka_unit_test(damaged_pfm_does_no_harm),
+        cmocka_unit_test(hdr_is_read),
+        cmocka_unit_test(malformed_hdr_is_refused),
+        cmocka_unit_test(damaged_hdr_does_no_harm),
+        cmocka_unit_test(jpeg_is_read),
+        cmocka_unit_test(damaged_jpeg_does_no_harm),
+        cmocka_unit_test(codes_are_those_of_the_file),
+        cmocka_unit_test(linear_values_become_codes),
         cmocka_unit_test(other_files_are_refused),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);

@@ -35,7 +35,7 @@ static void obj_keeps_the_order_of_the_file(void **state) {
     // A comment, every form of a corner, a continued line, CRLF, colors, negative numbers, a use before the definition.
     struct model model =
         load_text("a.obj", "\xef\xbb\xbf# comment \\\n\nv 0 0 0 # here, too\r\n  v\t1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 \\\n 0\nvt 1 2\n"
-                           "g a b\ns 1\nf 1/1 2/1 3/1 4/1 5\nf -1 -2/1 -4\nl 1 2\nv 16777217 3e-46 -0\nf 1 3 2");
+                           "g a b\ns 1\nf 1 2 3 4 5\nf -1 -2 -4\nl 1 2\nv 16777217 3e-46 -0\nf 1 3 2");
     static const float vertices[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 16777216, 0, -0.0f};
     static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 3, 2, 0, 0, 2, 1};
     assert_vertices(&model.mesh, vertices, 5);
@@ -49,13 +49,26 @@ static void obj_keeps_the_order_of_the_file(void **state) {
 static void obj_splits_vertices_by_normal(void **state) {
     (void)state;
     struct model model =
-        load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 1//2 2/7/1 3//-2\nf 1 2 3\n");
+        load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 1//2 2//1 3//-2\nf 1 2 3\n");
     static const float vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0};
     static const float normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     static const uint32_t triangles[] = {0, 1, 2, 3, 1, 2, 4, 5, 6};
     assert_vertices(&model.mesh, vertices, 7);
     assert_indices(&model.mesh, triangles, 3);
     assert_memory_equal(model.mesh.normals, normals, sizeof normals);
+    model_finish(&model);
+}
+
+static void obj_splits_vertices_by_texture_coordinate(void **state) {
+    (void)state;
+    struct model model = load_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0.25\nvt 1 0 0\nvt 7\nvn 0 0 1\n"
+                                            "f 1/1 2/2 3/-1\nf 1/1 2/1 3/3\nf 1/2/1 2/2 3\n");
+    static const float uvs[] = {0, 0.75f, 1, 1, 7, 1, 0, 0.75f, 1, 1, 0, 0}; // v goes down
+    static const uint32_t triangles[] = {0, 1, 2, 0, 3, 2, 4, 1, 5};
+    assert_int_equal(model.mesh.vertex_count, 6);
+    assert_indices(&model.mesh, triangles, 3);
+    assert_memory_equal(model.mesh.uvs, uvs, sizeof uvs);
+    assert_true(model.mesh.normals[3 * 4 + 2] == 1 && model.mesh.normals[2] == 0);
     model_finish(&model);
 }
 
@@ -77,6 +90,37 @@ static void obj_has_materials(void **state) {
     assert_true(m[0].specular[2] == 0.25f && m[0].shininess == 20);
     assert_true(m[1].ambient[2] == 0.5f && m[1].diffuse[2] == 1 && m[1].shininess == 0);
     assert_true(m[2].diffuse[0] == 0.8f);
+    model_finish(&model);
+}
+
+// Everything that a library can say of a material; the files of the textures need only be there.
+static void obj_has_textures_and_effects(void **state) {
+    (void)state;
+    const char library[] =
+        "newmtl a\nKd 0.5 0.5 0.5\nKe 3\nNi 1.25\nd 0.5\nmap_Kd -s 2 4 -o 0.5 0.25 1 -clamp on -bm 2 x y.png\nnorm n.png\nmap_Ke x y.png\n"
+        "newmtl b\nKs 0.5 0.25 2\nillum 3\nmap_Kd n.png\nmap_d n.png\n"
+        "newmtl c\nillum 7\nTf 1 0.5 0.25\nKa 1 1 1\nKd 0 0 0\nd 1\nNi 2\nmap_Kd .\\n.png\nmap_d x y.png\n"
+        "newmtl d\nmap_d n.png\nmap_Kd gone.png\nd -halo 0\n";
+    scratch_file("t.mtl", library, strlen(library));
+    scratch_file("x y.png", "", 0);
+    scratch_file("n.png", "", 0);
+    struct model model =
+        load_text("a.obj", "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n"
+                           "usemtl d\nf 1 2 3\n");
+    const struct scene_material *m = model.materials;
+    const struct texture_source *t = model.textures;
+    assert_int_equal(model.texture_count, 6);
+    assert_true(m[0].emission[2] == 3 && m[0].ior == 1.25f && m[0].alpha == 0.5f && m[0].alpha_mode == ALPHA_BLEND);
+    assert_true(m[0].diffuse_map.texture == 1 && m[0].emission_map.texture == 2 && m[0].normal_map.texture == 3);
+    assert_true(m[0].diffuse_map.srgb && m[0].emission_map.srgb && !m[0].normal_map.srgb);
+    static const float transform[6] = {2, 0, 0.5f, 0, 4, -3.25f}; // v' = 1 - (4 (1 - v) + 0.25)
+    assert_memory_equal(m[0].diffuse_map.transform, transform, sizeof transform);
+    assert_true(strstr(t[0].name, "/x y.png") && t[0].wrap_u == WRAP_CLAMP && t[0].wrap_v == WRAP_CLAMP && t[1].wrap_u == WRAP_REPEAT);
+    assert_true(m[1].model == MODEL_PHONG && m[1].reflection[0] == 0.5f && m[1].reflection[2] == 1);
+    assert_true(m[1].alpha_mode == ALPHA_BLEND && m[1].diffuse[0] == 1 && !t[m[1].diffuse_map.texture - 1].alpha_name); // its own alpha
+    assert_true(m[2].model == MODEL_DIELECTRIC && m[2].diffuse[1] == 0.5f && m[2].ambient[0] == 0 && m[2].ior == 2);
+    assert_true(strstr(t[m[2].diffuse_map.texture - 1].name, "n.png") && strstr(t[m[2].diffuse_map.texture - 1].alpha_name, "/x y.png"));
+    assert_true(m[3].alpha == 1 && strstr(t[m[3].diffuse_map.texture - 1].alpha_name, "/n.png"));
     model_finish(&model);
 }
 
@@ -202,6 +246,31 @@ static void ply_has_normals_if_whole(void **state) {
 }
 
 // --------------------------------------------------------------------------------------------------------------------- STL
+
+static void ply_has_texture_coordinates(void **state) {
+    (void)state;
+    static const struct {
+        const char *first, *second;
+        bool there;
+    } cases[] = {
+        {"float s", "float t", true},  {"double u", "uchar v", true}, {"float texture_u", "float texture_v", true},
+        {"float s", "float w", false}, {"float u", "float t", true},  {"float v", "float u", true},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[512];
+        snprintf(
+            text, sizeof text,
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty %s\n"
+            "property %s\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1 3\n1 0 0 1 0\n0 1 0 1 1\n3 0 1 2\n",
+            cases[i].first, cases[i].second);
+        struct model model = load_text("a.ply", text);
+        const float *uvs = model.mesh.uvs;
+        if ((uvs != NULL) != cases[i].there) fail_msg("case %zu", i);
+        if (uvs && i < 5) assert_true(uvs[0] == 1 && uvs[1] == -2 && uvs[3] == 1 && uvs[5] == 0);
+        if (uvs && i == 5) assert_true(uvs[0] == 3 && uvs[1] == 0);
+        model_finish(&model);
+    }
+}
 
 static void stl_is_the_same_in_both_forms(void **state) {
     (void)state;
@@ -339,6 +408,25 @@ static void smoothing_keeps_sharp_edges(void **state) {
         assert_near(mesh.normals + 3 * mesh.indices[i], n[0], n[1], n[2], 1e-7);
         assert_memory_equal(mesh.positions + 3 * mesh.indices[i], cube_vertices + 3 * cube[i], 3 * sizeof(float));
     }
+    mesh_finish(&mesh);
+}
+
+// Two triangles that share an edge, with texture coordinates that differ at one of its ends: the normals do not.
+static void smoothing_keeps_texture_coordinates(void **state) {
+    (void)state;
+    static const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.1f, 1, 0, 0}, uvs[] = {0, 0, 1, 0, 0, 1, 1, 1, 7, 7};
+    static const uint32_t triangles[] = {0, 1, 2, 4, 3, 2};
+    struct scene_mesh mesh = mesh_of(positions, 5, triangles, 2);
+    scratch_assert(mesh_add_uvs(&mesh, scratch_context()));
+    memcpy(mesh.uvs, uvs, sizeof uvs);
+    scratch_assert(mesh_smooth(&mesh, scratch_context(), 60));
+    assert_int_equal(mesh.vertex_count, 5);
+    for (int i = 0; i < 6; i++) {
+        assert_memory_equal(mesh.uvs + 2 * mesh.indices[i], uvs + 2 * triangles[i], 2 * sizeof(float));
+        assert_memory_equal(mesh.positions + 3 * mesh.indices[i], positions + 3 * triangles[i], 3 * sizeof(float));
+    }
+    assert_memory_equal(mesh.normals + 3 * mesh.indices[1], mesh.normals + 3 * mesh.indices[3], 3 * sizeof(float));
+    assert_int_not_equal(mesh.indices[1], mesh.indices[3]);
     mesh_finish(&mesh);
 }
 
@@ -517,15 +605,19 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(obj_keeps_the_order_of_the_file),
         cmocka_unit_test(obj_splits_vertices_by_normal),
+        cmocka_unit_test(obj_splits_vertices_by_texture_coordinate),
         cmocka_unit_test(obj_has_materials),
+        cmocka_unit_test(obj_has_textures_and_effects),
         cmocka_unit_test(obj_warns_of_what_is_missing),
         cmocka_unit_test(ply_is_the_same_in_ascii),
         cmocka_unit_test(ply_is_the_same_in_binary),
         cmocka_unit_test(ply_has_normals_if_whole),
+        cmocka_unit_test(ply_has_texture_coordinates),
         cmocka_unit_test(stl_is_the_same_in_both_forms),
         cmocka_unit_test(gltf_composes_its_nodes),
         cmocka_unit_test(gltf_has_cameras_and_lights),
         cmocka_unit_test(smoothing_keeps_sharp_edges),
+        cmocka_unit_test(smoothing_keeps_texture_coordinates),
         cmocka_unit_test(smoothing_weighs_by_angle),
         cmocka_unit_test(smoothing_goes_from_edge_to_edge),
         cmocka_unit_test(smoothing_is_quick_and_the_same_on_all_threads),

@@ -1,4 +1,4 @@
-// Images in memory and in files: PNG (libspng), OpenEXR (OpenEXRCore), PFM. Knows nothing of rendering.
+// Images in memory and in files: PNG (libspng), OpenEXR (OpenEXRCore), JPEG (libjpeg-turbo), Radiance, PFM. Knows nothing of rendering.
 #ifndef BASE_IMAGE_H
 #define BASE_IMAGE_H
 
@@ -41,9 +41,20 @@ bool image_write_exr(const struct image_layer *layers, size_t count, struct cont
 // A PNG in memory, of 1 or 3 channels, as image_write_png writes it; smaller rather than quick. file_bytes_finish frees it.
 bool image_encode_png(struct file_bytes *out, struct context *ctx, const struct image *image, enum transfer transfer);
 
-// Reads .png (8 or 16 bit, grey or colour, decoded from sRGB to linear, unless the file says that its gamma is 1; alpha is ignored),
-// .exr (channels R, G, B, or Y; half, float or uint; scan lines or tiles, of which the finest level is read) or .pfm (its scale is
-// ignored), by its content; 3 channels. GN_IO with the path and what is wrong.
+// Reads .png (8 or 16 bit, grey or colour, decoded from sRGB to linear, unless the file says that its gamma is 1; alpha is ignored), .jpg
+// (decoded from sRGB), .exr (channels R, G, B, or Y; half, float or uint; scan lines or tiles, of which the finest level is read), .hdr
+// (Radiance) or .pfm (its scale is ignored), by its content; 3 channels. GN_IO with the path and what is wrong.
 bool image_read(struct image *out, struct context *ctx, const char *path);
+
+// A picture of 8-bit codes. Row-major, top row first. Zeroed is empty.
+struct codes {
+    uint32_t width, height;
+    uint8_t *pixels; // 4 × width × height: red, green, blue, alpha
+};
+void codes_finish(struct codes *codes);
+
+// Decodes a file of any of the formats above that lies in memory. PNG and JPEG: their codes, whatever they mean, alpha 255 where there is
+// none; the others, which hold linear values: the codes by `transfer`. GN_IO with the path and what is wrong.
+bool codes_decode(struct codes *out, struct context *ctx, const char *path, const struct file_bytes *bytes, enum transfer transfer);
 
 #endif

@@ -9,10 +9,17 @@
 bool image_decode_png(struct image *out, struct context *ctx, const char *path, const struct file_bytes *bytes);
 bool image_decode_exr(struct image *out, struct context *ctx, const char *path, const struct file_bytes *bytes);
 bool image_decode_pfm(struct image *out, struct context *ctx, const char *path, const struct file_bytes *bytes);
+bool image_decode_hdr(struct image *out, struct context *ctx, const char *path, const struct file_bytes *bytes);
 
-// Makes the 3-channel image that a header announces, unless it is empty, larger than 65536 on a side or 2^28 pixels, or has more than
-// `most_per_byte` pixels for a byte of the file, which then cannot hold them (GN_IO).
+// The same for 8-bit codes.
+bool codes_decode_png(struct codes *out, struct context *ctx, const char *path, const struct file_bytes *bytes);
+bool codes_decode_jpeg(struct codes *out, struct context *ctx, const char *path, const struct file_bytes *bytes);
+
+// Makes the 3-channel image, or the codes, that a header announces, unless it is empty, larger than 65536 on a side or 2^28 pixels, or has
+// more than `most_per_byte` pixels for a byte of the file, which then cannot hold them (GN_IO).
 bool image_init_announced(struct image *out, struct context *ctx, const char *path, uint64_t width, uint64_t height, size_t file_size,
+                          double most_per_byte);
+bool codes_init_announced(struct codes *out, struct context *ctx, const char *path, uint64_t width, uint64_t height, size_t file_size,
                           double most_per_byte);
 
 // Whether a writer can take the image: it has pixels, and 1 or 3 channels (GN_INTERNAL).

@@ -149,17 +149,22 @@ static int png_decode_pixels(spng_ctx *png, int format, void *pixels, size_t siz
     return error ? error : spng_decode_chunks(png);
 }
 
+// Finds out what the file is.
+static bool png_open(spng_ctx *png, struct spng_ihdr *ihdr, struct context *ctx, const char *path, const struct file_bytes *bytes) {
+    int error = has_end(bytes) ? spng_set_png_buffer(png, bytes->data, bytes->size) : SPNG_IO_EOF;
+    if (!error) error = spng_get_ihdr(png, ihdr);
+    return !error || fail(ctx, GN_IO, "%s: is not a valid PNG file: %s", path, spng_strerror(error));
+}
+
 static bool png_decode(spng_ctx *png, struct image *out, struct context *ctx, const char *path, const struct file_bytes *bytes) {
     struct spng_ihdr ihdr;
-    int error = has_end(bytes) ? spng_set_png_buffer(png, bytes->data, bytes->size) : SPNG_IO_EOF;
-    if (!error) error = spng_get_ihdr(png, &ihdr);
-    if (error) return fail(ctx, GN_IO, "%s: is not a valid PNG file: %s", path, spng_strerror(error));
+    if (!png_open(png, &ihdr, ctx, path, bytes)) return false;
     if (!image_init_announced(out, ctx, path, ihdr.width, ihdr.height, bytes->size, MOST_PIXELS_PER_BYTE)) return false;
     bool deep = ihdr.bit_depth == 16;
     size_t count = (size_t)ihdr.width * ihdr.height, size = count * (deep ? 8 : 3);
     void *codes = array_alloc(ctx, count, deep ? 8 : 3, path);
     if (!codes) return false;
-    error = png_decode_pixels(png, deep ? SPNG_FMT_RGBA16 : SPNG_FMT_RGB8, codes, size);
+    int error = png_decode_pixels(png, deep ? SPNG_FMT_RGBA16 : SPNG_FMT_RGB8, codes, size);
     if (error) {
         fail(ctx, GN_IO, "%s: is not a valid PNG file: %s", path, spng_strerror(error));
     } else {
@@ -180,5 +185,25 @@ bool image_decode_png(struct image *out, struct context *ctx, const char *path, 
     bool done = png_decode(png, out, ctx, path, bytes);
     spng_ctx_free(png);
     if (!done) image_finish(out);
+    return done;
+}
+
+static bool png_decode_codes(spng_ctx *png, struct codes *out, struct context *ctx, const char *path, const struct file_bytes *bytes) {
+    struct spng_ihdr ihdr;
+    if (!png_open(png, &ihdr, ctx, path, bytes) ||
+        !codes_init_announced(out, ctx, path, ihdr.width, ihdr.height, bytes->size, MOST_PIXELS_PER_BYTE))
+        return false;
+    int error = spng_decode_image(png, out->pixels, 4 * (size_t)ihdr.width * ihdr.height, SPNG_FMT_RGBA8, SPNG_DECODE_TRNS);
+    if (!error) error = spng_decode_chunks(png);
+    return !error || fail(ctx, GN_IO, "%s: is not a valid PNG file: %s", path, spng_strerror(error));
+}
+
+bool codes_decode_png(struct codes *out, struct context *ctx, const char *path, const struct file_bytes *bytes) {
+    *out = (struct codes){0};
+    spng_ctx *png = spng_ctx_new(0);
+    if (!png) return fail(ctx, GN_LIMIT, "%s: no memory to decode it", path);
+    const bool done = png_decode_codes(png, out, ctx, path, bytes);
+    spng_ctx_free(png);
+    if (!done) codes_finish(out);
     return done;
 }

@@ -4,12 +4,14 @@
 
 #include "scene/import.h"
 #include "scene/material.h"
+#include "scene/texture.h"
 
 // A scene under construction: what is not yet in plain arrays.
 struct scene_build {
     struct scene *scene;
     struct context *ctx;
     struct material_table materials;
+    struct texture_table textures;
 };
 
 // The two sources. Each fills all of the scene but the derived fields; on failure it is half made.

@@ -23,6 +23,7 @@ bool model_load(struct model *out, struct context *ctx, const char *path) {
 void model_finish(struct model *model) {
     mesh_finish(&model->mesh);
     materials_free(model->materials, model->material_count);
+    texture_sources_finish(model->textures, model->texture_count);
     free(model->cameras);
     free(model->lights);
     *model = (struct model){0};

@@ -6,13 +6,15 @@
 #ifndef SCENE_IMPORT_H
 #define SCENE_IMPORT_H
 
-#include "scene/scene.h"
+#include "scene/texture.h"
 
 // What a model file holds. Zeroed is empty; model_finish accepts a half-made one.
 struct model {
     struct scene_mesh mesh; // one mesh of all faces, world space of the file; mesh.materials indexes `materials`, NULL: all have the first
-    struct scene_material *materials;
+    struct scene_material *materials; // their maps number `textures`
     uint32_t material_count;
+    struct texture_source *textures; // not yet loaded
+    uint32_t texture_count;
     struct scene_camera *cameras; // as far as the file has them
     uint32_t camera_count;
     struct scene_light *lights; // intensities in the file's unit

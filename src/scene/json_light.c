@@ -1,5 +1,7 @@
-// Where the light of a scene file comes from and what it meets on its way: lights, fog.
-#include "scene/json_parts.h"
+// Where the light of a scene file comes from and what it meets on its way: lights, the environment, fog.
+#include <stdlib.h>
+
+#include "scene/json_map.h"
 
 // ------------------------------------------------------------------------------------------------------------------- lights
 
@@ -71,6 +73,27 @@ bool part_lights(struct scene_build *build, const struct json_at *root) {
         if (!read_light(&scene->lights[scene->light_count], &at)) return false;
     }
     return true;
+}
+
+// -------------------------------------------------------------------------------------------------------------- environment
+
+// "sky.hdr", or {"file": "sky.hdr", …}.
+bool part_environment(struct scene_build *build, const struct json_at *root) {
+    static const char *const environment_keys[] = {"file", "scale", "rotation_deg", NULL};
+    struct scene_environment *out = &build->scene->environment;
+    struct json_at at, named;
+    if (!at_member(&at, root, "environment")) return true;
+    out->scale = 1;
+    if (!json_is_string(at.value) && (!at_object(&at, environment_keys) || !at_get_float(&at, "scale", RANGE_NOT_NEGATIVE, &out->scale) ||
+                                      !at_get_float(&at, "rotation_deg", RANGE_ANY, &out->rotation_deg)))
+        return false;
+    char *path = map_path(&named, &at, build, "the path of an image");
+    struct gn_error error;
+    struct context inner = context_make(&build->ctx->host, &error);
+    const bool done = path && environment_load(out, &inner, path);
+    if (path && !done) at_fail_as(&named, &error);
+    free(path);
+    return done;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------- fog

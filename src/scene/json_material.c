@@ -1,7 +1,7 @@
 // The materials of a scene file.
 #include <string.h>
 
-#include "scene/json_parts.h"
+#include "scene/json_map.h"
 
 #define PHONG (1u << MODEL_PHONG)
 #define BLINN (1u << MODEL_BLINN_PHONG)
@@ -36,20 +36,32 @@ static const struct json_key keys[] = {
     {"alpha", ALL},
     {"alpha_mode", ALL},
     {"alpha_cutoff", ALL},
+    {"diffuse_map", ALL},
+    {"normal_map", ALL},
+    {"roughness_map", METAL},
+    {"emission_map", ALL},
     {NULL, 0},
 };
 
-// What the model's terms are where the file says nothing. The diffuse color of glass and mirrors is what they let pass and send back:
-// white, and no light comes from all around to them but by rays.
-static void set_defaults(struct scene_material *out) {
-    if (out->model != MODEL_DIELECTRIC && out->model != MODEL_MIRROR) return;
-    for (int i = 0; i < 3; i++) out->diffuse[i] = 1;
+static void set3(float out[3], float value) { out[0] = out[1] = out[2] = value; }
+
+static bool has(const struct json_at *object, const char *key) {
+    struct json_at member;
+    return at_member(&member, object, key);
+}
+
+// What the model's terms are where the file says nothing. What a map is to color, is white; so is what glass and mirrors do to light.
+static void set_defaults(struct scene_material *out, const struct json_at *at) {
+    if (out->model == MODEL_DIELECTRIC || out->model == MODEL_MIRROR || has(at, "diffuse_map")) set3(out->diffuse, 1);
+    if (has(at, "emission_map")) set3(out->emission, 1);
+    if (has(at, "roughness_map")) out->metallic = 1;
 }
 
 static bool read_colors(struct scene_material *out, const struct json_at *at) {
     if (!at_get_float3(at, "diffuse", RANGE_NOT_NEGATIVE, out->diffuse)) return false;
-    const bool specular = out->model == MODEL_DIELECTRIC || out->model == MODEL_MIRROR;
-    for (int i = 0; i < 3; i++) out->ambient[i] = specular ? 0 : out->diffuse[i];
+    // Light from all around comes to glass and mirrors by rays, not as a term.
+    memcpy(out->ambient, out->diffuse, sizeof out->ambient);
+    if (out->model == MODEL_DIELECTRIC || out->model == MODEL_MIRROR) set3(out->ambient, 0);
     return at_get_float3(at, "ambient", RANGE_NOT_NEGATIVE, out->ambient) &&
            at_get_float3(at, "specular", RANGE_NOT_NEGATIVE, out->specular) &&
            at_get_float(at, "shininess", RANGE_NOT_NEGATIVE, &out->shininess) &&
@@ -66,8 +78,7 @@ static bool read_physics(struct scene_material *out, const struct json_at *at) {
 // Without a mode, a cutoff asks for a mask, and alpha for blending.
 static bool read_alpha(struct scene_material *out, const struct json_at *at) {
     static const char *const modes[] = {[ALPHA_OPAQUE] = "opaque", [ALPHA_MASK] = "mask", [ALPHA_BLEND] = "blend", NULL};
-    struct json_at member;
-    int mode = at_member(&member, at, "alpha_cutoff") ? ALPHA_MASK : at_member(&member, at, "alpha") ? ALPHA_BLEND : ALPHA_OPAQUE;
+    int mode = has(at, "alpha_cutoff") ? ALPHA_MASK : has(at, "alpha") ? ALPHA_BLEND : ALPHA_OPAQUE;
     if (!at_get_choice(at, "alpha_mode", modes, &mode) || !at_get_float(at, "alpha", RANGE_SHARE, &out->alpha) ||
         !at_get_float(at, "alpha_cutoff", RANGE_SHARE, &out->alpha_cutoff))
         return false;
@@ -75,13 +86,20 @@ static bool read_alpha(struct scene_material *out, const struct json_at *at) {
     return true;
 }
 
-static bool read_material(struct scene_material *out, const struct json_at *at) {
+static bool read_maps(struct scene_material *out, struct scene_build *build, const struct json_at *at) {
+    return map_read(&out->diffuse_map, NULL, build, at, "diffuse_map", MAP_COLOR) &&
+           map_read(&out->normal_map, &out->normal_scale, build, at, "normal_map", MAP_NORMAL) &&
+           map_read(&out->roughness_map, NULL, build, at, "roughness_map", MAP_DATA) &&
+           map_read(&out->emission_map, NULL, build, at, "emission_map", MAP_COLOR);
+}
+
+static bool read_material(struct scene_material *out, struct scene_build *build, const struct json_at *at) {
     int model = MODEL_PHONG;
     if (!json_is_object(at->value)) return at_expected(at, "an object");
     if (!at_get_choice(at, "model", models, &model) || !at_object_of_kind(at, keys, models, model)) return false;
     out->model = (enum material_model)model;
-    set_defaults(out);
-    return read_colors(out, at) && read_physics(out, at) && read_alpha(out, at);
+    set_defaults(out, at);
+    return read_colors(out, at) && read_physics(out, at) && read_alpha(out, at) && read_maps(out, build, at);
 }
 
 bool part_materials(struct scene_build *build, const struct json_at *root) {
@@ -93,7 +111,7 @@ bool part_materials(struct scene_build *build, const struct json_at *root) {
     json_object_foreach(materials.value, name, value) {
         struct json_at at;
         struct scene_material *material = material_add(&build->materials, build->ctx, name);
-        if (!material || !at_member(&at, &materials, name) || !read_material(material, &at)) return false;
+        if (!material || !at_member(&at, &materials, name) || !read_material(material, build, &at)) return false;
     }
     return true;
 }

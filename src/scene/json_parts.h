@@ -16,6 +16,7 @@ bool part_materials(struct scene_build *build, const struct json_at *root);
 
 // json_light.c
 bool part_lights(struct scene_build *build, const struct json_at *root);
+bool part_environment(struct scene_build *build, const struct json_at *root);
 bool part_fog(struct scene_fog *out, const struct json_at *root);
 
 // json_shape.c

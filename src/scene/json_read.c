@@ -62,6 +62,11 @@ bool at_fail(const struct json_at *at, const char *format, ...) {
     return fail_at(at, locate(at, NULL), message);
 }
 
+bool at_fail_as(const struct json_at *at, const struct gn_error *error) {
+    if (error->status == GN_SCENE) return at_fail(at, "cannot be used: %s", error->message);
+    return fail(at->file->ctx, error->status, "%s", error->message);
+}
+
 bool at_expected(const struct json_at *at, const char *expected) {
     static const char *const kinds[] = {[JSON_OBJECT] = "an object", [JSON_ARRAY] = "a list", [JSON_STRING] = "a string",
                                         [JSON_TRUE] = "true",        [JSON_FALSE] = "false",  [JSON_NULL] = "null"};
@@ -264,14 +269,12 @@ bool at_get_bool(const struct json_at *object, const char *key, bool *out) {
     return true;
 }
 
-bool at_get_choice(const struct json_at *object, const char *key, const char *const *names, int *out) {
-    struct json_at member;
-    if (!at_member(&member, object, key)) return true;
+bool at_choice(const struct json_at *at, const char *const *names, int *out) {
     char expected[192] = "";
     for (size_t i = 0, used = 0; names[i]; i++)
         used += (size_t)snprintf(expected + used, sizeof expected - used, "%s\"%s\"", i == 0 ? "" : names[i + 1] ? ", " : " or ", names[i]);
     const char *name = "";
-    if (!at_text(&member, expected, &name)) return false;
+    if (!at_text(at, expected, &name)) return false;
     struct nearest nearest = nearest_to(name);
     for (int i = 0; names[i]; i++) {
         if (strcmp(names[i], name) == 0) {
@@ -280,5 +283,10 @@ bool at_get_choice(const struct json_at *object, const char *key, const char *co
         }
         nearest_offer(&nearest, names[i]);
     }
-    return at_fail(&member, "is \"%s\", expected %s%s", excerpt_word(name).text, expected, nearest_hint(&nearest).text);
+    return at_fail(at, "is \"%s\", expected %s%s", excerpt_word(name).text, expected, nearest_hint(&nearest).text);
+}
+
+bool at_get_choice(const struct json_at *object, const char *key, const char *const *names, int *out) {
+    struct json_at member;
+    return !at_member(&member, object, key) || at_choice(&member, names, out);
 }

@@ -22,6 +22,9 @@ struct json_at at_item(const struct json_at *list, size_t index);
 // Reports "file:line:column: <way to the value> …". Returns false.
 bool at_fail(const struct json_at *at, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// Passes on a fault of what the value names, as "… <way> cannot be used: …" if the scene is to blame. Returns false.
+bool at_fail_as(const struct json_at *at, const struct gn_error *error);
+
 // Reports "… <way> is <value>, expected …". Returns false.
 bool at_expected(const struct json_at *at, const char *expected);
 
@@ -71,6 +74,7 @@ bool at_get_floats(const struct json_at *object, const char *key, enum json_rang
 bool at_get_count(const struct json_at *object, const char *key, uint32_t least, uint32_t most, uint32_t *out);
 bool at_get_bool(const struct json_at *object, const char *key, bool *out);
 // One of names[0 …], which end with NULL, by number.
+bool at_choice(const struct json_at *at, const char *const *names, int *out);
 bool at_get_choice(const struct json_at *object, const char *key, const char *const *names, int *out);
 
 #endif

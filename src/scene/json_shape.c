@@ -80,18 +80,13 @@ static bool read_rows(float *out, const struct json_at *shape, const char *key, 
     return true;
 }
 
-static bool alloc_uvs(struct scene_mesh *mesh, struct context *ctx) {
-    mesh->uvs = array_alloc(ctx, mesh->vertex_count, 2 * sizeof *mesh->uvs, "texture coordinates");
-    return mesh->uvs != NULL;
-}
-
 static bool read_triangle(struct scene_shape *out, struct scene_build *build, const struct json_at *at) {
     struct json_at uvs;
     if (!mesh_init(&out->mesh, build->ctx, 3, 1, false)) return false;
     for (uint32_t i = 0; i < 3; i++) out->mesh.indices[i] = i;
     if (!read_rows(out->mesh.positions, at, "vertices", 3, 3, "a list of 3 points")) return false;
     if (at_member(&uvs, at, "uvs") &&
-        (!alloc_uvs(&out->mesh, build->ctx) || !read_rows(out->mesh.uvs, at, "uvs", 3, 2, "a list of 3 pairs of numbers")))
+        (!mesh_add_uvs(&out->mesh, build->ctx) || !read_rows(out->mesh.uvs, at, "uvs", 3, 2, "a list of 3 pairs of numbers")))
         return false;
     return set_material(out, build, at);
 }
@@ -117,7 +112,7 @@ static bool read_rectangle(struct scene_shape *out, struct scene_build *build, c
         return false;
     at_member(&member, at, "edges");
     if (!are_edges(edges)) return at_fail(&member, "are not perpendicular, or one is zero, expected the two sides of a rectangle");
-    if (!mesh_init(&out->mesh, build->ctx, 4, 2, false) || !alloc_uvs(&out->mesh, build->ctx)) return false;
+    if (!mesh_init(&out->mesh, build->ctx, 4, 2, false) || !mesh_add_uvs(&out->mesh, build->ctx)) return false;
     memcpy(out->mesh.indices, indices, sizeof indices);
     memcpy(out->mesh.uvs, uvs, sizeof uvs);
     for (int k = 0; k < 4; k++)

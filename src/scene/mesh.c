@@ -31,6 +31,11 @@ bool mesh_init(struct scene_mesh *out, struct context *ctx, uint64_t vertices, u
     return true;
 }
 
+bool mesh_add_uvs(struct scene_mesh *mesh, struct context *ctx) {
+    mesh->uvs = array_alloc(ctx, mesh->vertex_count, 2 * sizeof *mesh->uvs, "texture coordinates");
+    return mesh->uvs != NULL;
+}
+
 bool mesh_count_allowed(struct context *ctx, const char *path, uint64_t triangles) {
     if (triangles <= MOST_PRIMITIVES) return true;
     return fail(ctx, GN_LIMIT, "%s: has %llu triangles or more, at most %u are possible", path, (unsigned long long)triangles,

@@ -15,6 +15,9 @@ void mesh_finish(struct scene_mesh *mesh);
 // Makes room for counts of vertices and triangles; zeroed. GN_LIMIT when there are too many, or no memory.
 bool mesh_init(struct scene_mesh *out, struct context *ctx, uint64_t vertices, uint64_t triangles, bool normals);
 
+// Gives the mesh texture coordinates, zeroed.
+bool mesh_add_uvs(struct scene_mesh *mesh, struct context *ctx);
+
 // Whether a mesh may have so many triangles; else GN_LIMIT with the file's name.
 bool mesh_count_allowed(struct context *ctx, const char *path, uint64_t triangles);
 
@@ -38,6 +41,7 @@ double transform_condition(const struct transform *transform);
 
 // Computes vertex normals: each the mean of the faces around a vertex, weighted by the angle of each face there. Faces that meet at an
 // edge by more than crease_deg, or only at a vertex, are not averaged. Equal positions count as one vertex; the vertices are numbered anew.
+// Where texture coordinates differ around such a vertex, there are several with the same normal.
 bool mesh_smooth(struct scene_mesh *mesh, struct context *ctx, double crease_deg);
 
 // The crease angle where nothing else is asked for.

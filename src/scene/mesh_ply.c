@@ -128,45 +128,66 @@ static bool skip_property(struct ply *ply, const struct ply_property *property) 
 
 // ----------------------------------------------------------------------------------------------------------------- elements
 
-static const char *const vertex_names[6] = {"x", "y", "z", "nx", "ny", "nz"};
+// What a property of a vertex can be to us. Programs do not agree on the names of texture coordinates.
+enum role { ROLE_POSITION, ROLE_NORMAL = 3, ROLE_UV = 6, NO_ROLE = 8 };
 
-// Which of vertex_names each of the element's properties is; 6 for none.
-static bool find_roles(unsigned char *roles, bool has[6], const struct ply *ply, const struct ply_element *element) {
-    for (int k = 0; k < 6; k++) has[k] = false;
+static const struct {
+    const char *name;
+    unsigned char role;
+} vertex_names[] = {{"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3},        {"ny", 4},        {"nz", 5},        {"s", 6},
+                    {"t", 7}, {"u", 6}, {"v", 7}, {"texture_u", 6}, {"texture_v", 7}, {"texture_s", 6}, {"texture_t", 7}};
+
+static unsigned char find_role(const struct ply_property *property) {
+    for (size_t i = 0; i < sizeof vertex_names / sizeof *vertex_names; i++)
+        if (ply_word_is(property->name, vertex_names[i].name)) return vertex_names[i].role;
+    return NO_ROLE;
+}
+
+// The role of each of the element's properties; normals and texture coordinates count only if they are whole.
+static bool find_roles(unsigned char *roles, bool has[NO_ROLE], const struct ply *ply, const struct ply_element *element) {
+    for (int k = 0; k < NO_ROLE; k++) has[k] = false;
     for (size_t i = 0; i < element->property_count; i++) {
         const struct ply_property *property = ply_property_at(&ply->header, element->first + i);
-        unsigned char k = 0;
-        while (k < 6 && !ply_word_is(property->name, vertex_names[k])) k++;
-        if (k < 6 && property->is_list)
-            return text_fail(&ply->text, property->name.at, "property %s is a list, expected a number", vertex_names[k]);
-        roles[i] = k;
-        if (k < 6) has[k] = true;
+        roles[i] = find_role(property);
+        if (roles[i] < ROLE_UV && property->is_list)
+            return text_fail(&ply->text, property->name.at, "property %s is a list, expected a number", vertex_names[roles[i]].name);
+        if (property->is_list || (roles[i] < NO_ROLE && has[roles[i]])) roles[i] = NO_ROLE; // "s" and "u" both: the first counts
+        if (roles[i] < NO_ROLE) has[roles[i]] = true;
     }
+    has[ROLE_NORMAL] = has[ROLE_NORMAL] && has[ROLE_NORMAL + 1] && has[ROLE_NORMAL + 2];
+    has[ROLE_UV] = has[ROLE_UV] && has[ROLE_UV + 1];
+    for (size_t i = 0; i < element->property_count; i++)
+        if ((roles[i] >= ROLE_NORMAL && roles[i] < ROLE_UV && !has[ROLE_NORMAL]) || (roles[i] >= ROLE_UV && !has[ROLE_UV]))
+            roles[i] = NO_ROLE;
     for (int k = 0; k < 3; k++)
         if (!has[k])
-            return text_fail(&ply->text, element->name.at, "the vertices have no property %s, expected x, y and z", vertex_names[k]);
+            return text_fail(&ply->text, element->name.at, "the vertices have no property %s, expected x, y and z", vertex_names[k].name);
     return true;
 }
 
 static bool read_vertex(struct ply *ply, const unsigned char *roles) {
-    float values[7] = {0};
+    float values[NO_ROLE] = {0};
     for (size_t i = 0; i < ply->element->property_count; i++) {
         const struct ply_property *property = ply_property_at(&ply->header, ply->element->first + i);
-        if (roles[i] == 6 ? !skip_property(ply, property) : !next_float(ply, property->type, &values[roles[i]], vertex_names[roles[i]]))
+        if (roles[i] == NO_ROLE ? !skip_property(ply, property)
+                                : !next_float(ply, property->type, &values[roles[i]], vertex_names[roles[i]].name))
             return false;
     }
     memcpy(ply->mesh->positions + 3 * ply->row, values, 3 * sizeof(float));
-    if (ply->mesh->normals) memcpy(ply->mesh->normals + 3 * ply->row, values + 3, 3 * sizeof(float));
+    if (ply->mesh->normals) memcpy(ply->mesh->normals + 3 * ply->row, values + ROLE_NORMAL, 3 * sizeof(float));
+    if (ply->mesh->uvs) {
+        float *uv = ply->mesh->uvs + 2 * ply->row;
+        uv[0] = values[ROLE_UV], uv[1] = 1 - values[ROLE_UV + 1]; // the file's v goes up
+    }
     return true;
 }
 
 static bool read_vertices(struct ply *ply) {
-    bool has[6];
+    bool has[NO_ROLE];
     unsigned char *roles = array_alloc(ply->text.ctx, ply->element->property_count, 1, "PLY properties");
     bool done = roles && find_roles(roles, has, ply, ply->element);
-    if (done && !(has[3] && has[4] && has[5])) // normals count only if they are whole
-        for (size_t i = 0; i < ply->element->property_count; i++) roles[i] = roles[i] < 3 ? roles[i] : 6;
-    done = done && mesh_init(ply->mesh, ply->text.ctx, ply->element->count, 0, has[3] && has[4] && has[5]);
+    done = done && mesh_init(ply->mesh, ply->text.ctx, ply->element->count, 0, has[ROLE_NORMAL]);
+    done = done && (!has[ROLE_UV] || mesh_add_uvs(ply->mesh, ply->text.ctx));
     for (ply->row = 0; done && ply->row < ply->element->count; ply->row++) {
         if (ply->row % 65536 == 0) done = text_progress(&ply->text);
         done = done && read_vertex(ply, roles);

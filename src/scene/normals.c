@@ -219,10 +219,54 @@ static bool smooth(struct smoothing *s, struct context *ctx) {
     return parallel_for_progress(ctx, "scene", s->ring_count, 4096, rings_write, s);
 }
 
+// Parts the new vertices by the texture coordinates that the old ones had: corner i has old vertex old[i] and new one mesh->indices[i].
+static bool split_by_uvs(struct scene_mesh *mesh, struct context *ctx, const float *old_uvs, const uint32_t *old) {
+    struct row {
+        uint32_t vertex;
+        float uv[2];
+    };
+    const uint32_t corner_count = 3 * mesh->triangle_count;
+    struct row *rows = array_alloc(ctx, corner_count, sizeof *rows, "texture coordinates");
+    uint32_t *number = array_alloc(ctx, corner_count, sizeof *number, "vertex numbers"), count;
+    for (uint32_t i = 0; rows && i < corner_count; i++) {
+        rows[i].vertex = mesh->indices[i];
+        memcpy(rows[i].uv, old_uvs + 2 * (size_t)old[i], sizeof rows[i].uv);
+    }
+    struct scene_mesh split = {0};
+    const bool done = rows && number && unique_rows(number, &count, ctx, rows, corner_count, 3) && mesh_init(&split, ctx, count, 0, true) &&
+                      mesh_add_uvs(&split, ctx);
+    for (uint32_t i = 0; done && i < corner_count; i++) {
+        const size_t to = number[i], from = rows[i].vertex;
+        memcpy(split.positions + 3 * to, mesh->positions + 3 * from, 3 * sizeof(float));
+        memcpy(split.normals + 3 * to, mesh->normals + 3 * from, 3 * sizeof(float));
+        memcpy(split.uvs + 2 * to, rows[i].uv, sizeof rows[i].uv);
+        mesh->indices[i] = number[i];
+    }
+    if (done) {
+        free(mesh->positions);
+        free(mesh->normals);
+        mesh->positions = split.positions, mesh->normals = split.normals, mesh->uvs = split.uvs, mesh->vertex_count = count;
+        split.positions = split.normals = split.uvs = NULL;
+    }
+    mesh_finish(&split);
+    free(number);
+    free(rows);
+    return done;
+}
+
+// A copy of the indices, if there are texture coordinates to be told apart by them.
+static bool keep_indices(uint32_t **out, const struct scene_mesh *mesh, struct context *ctx) {
+    *out = NULL;
+    if (!mesh->uvs) return true;
+    *out = array_alloc(ctx, mesh->triangle_count, 3 * sizeof **out, "vertex numbers");
+    if (*out && mesh->triangle_count > 0) memcpy(*out, mesh->indices, 3 * sizeof **out * mesh->triangle_count);
+    return *out != NULL;
+}
+
 bool mesh_smooth(struct scene_mesh *mesh, struct context *ctx, double crease_deg) {
     struct smoothing s = {.mesh = mesh, .least_cosine = cos(crease_deg * (PI / 180))};
-    uint32_t *number = array_alloc(ctx, mesh->vertex_count, sizeof *number, "vertex numbers");
-    bool done = number != NULL;
+    uint32_t *number = array_alloc(ctx, mesh->vertex_count, sizeof *number, "vertex numbers"), *old;
+    bool done = keep_indices(&old, mesh, ctx) && number;
     s.number = number;
     done = done && unique_rows(number, &s.ring_count, ctx, mesh->positions, mesh->vertex_count, 3) && smooth(&s, ctx);
     if (done) {
@@ -231,8 +275,13 @@ bool mesh_smooth(struct scene_mesh *mesh, struct context *ctx, double crease_deg
         free(mesh->normals);
         mesh->positions = s.out.positions, mesh->normals = s.out.normals, mesh->vertex_count = s.out.vertex_count;
         s.out.positions = s.out.normals = NULL;
+        float *uvs = mesh->uvs;
+        mesh->uvs = NULL;
+        done = !uvs || split_by_uvs(mesh, ctx, uvs, old);
+        free(uvs);
     }
     free(number);
+    free(old);
     smoothing_finish(&s);
     return done;
 }

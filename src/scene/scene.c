@@ -22,13 +22,22 @@ static void complete_camera(struct scene_camera *camera) {
     memcpy(camera->look_at_end, camera->look_at, sizeof camera->look_at);
 }
 
+// Texture coordinates are for textures.
+static void drop_uvs(struct scene *scene) {
+    for (uint32_t i = 0; i < scene->shape_count + scene->prototype_count; i++) {
+        struct scene_mesh *mesh = i < scene->shape_count ? &scene->shapes[i].mesh : &scene->prototypes[i - scene->shape_count];
+        free(mesh->uvs);
+        mesh->uvs = NULL;
+    }
+}
+
 bool scene_load(struct scene *out, struct context *ctx, const char *path) {
     *out = (struct scene){
         .film = {.width = 512, .height = 512, .spp = 1, .transfer = TRANSFER_SRGB, .filter = FILTER_BOX, .filter_radius = 0.5f},
         .shadows = true,
         .paths = {.max_depth = 8, .roulette_depth = 3},
     };
-    struct scene_build build = {.scene = out, .ctx = ctx, .materials = MATERIAL_TABLE};
+    struct scene_build build = {.scene = out, .ctx = ctx, .materials = MATERIAL_TABLE, .textures = TEXTURE_TABLE};
     char suffix[16];
     path_suffix(path, suffix, sizeof suffix);
     out->path = strdup(path);
@@ -36,8 +45,10 @@ bool scene_load(struct scene *out, struct context *ctx, const char *path) {
     done = done && progress(ctx, "scene", 0, -1) &&
            (strcmp(suffix, "json") == 0 ? scene_load_json(&build, path) : scene_load_model(&build, path));
     material_table_take(&build.materials, &out->materials, &out->material_count);
+    texture_table_take(&build.textures, &out->textures, &out->texture_count);
     done = done && scene_area_lights(out, ctx) && progress(ctx, "scene", 1, 0);
     complete_camera(&out->camera);
+    if (done && out->texture_count == 0) drop_uvs(out);
     if (!done) scene_finish(out);
     return done;
 }
@@ -71,6 +82,18 @@ const char *path_unreadable(const char *path) {
     return access(path, R_OK) == 0 ? NULL : strerror(errno);
 }
 
+// Adds a material of a model whose textures have these numbers in the scene; numbers[NO_TEXTURE] is NO_TEXTURE.
+static bool take_material(struct scene_build *build, const struct scene_material *from, const uint32_t *numbers) {
+    struct scene_material *to = material_add(&build->materials, build->ctx, from->name);
+    if (!to) return false;
+    char *name = to->name;
+    *to = *from;
+    to->name = name;
+    struct scene_map *const maps[] = {&to->diffuse_map, &to->normal_map, &to->roughness_map, &to->emission_map};
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++) maps[i]->texture = numbers[maps[i]->texture];
+    return true;
+}
+
 bool shape_take_model(struct scene_shape *shape, struct scene_build *build, struct model *model, const uint32_t *material) {
     shape->type = SHAPE_MESH;
     shape->mesh = model->mesh;
@@ -83,13 +106,13 @@ bool shape_take_model(struct scene_shape *shape, struct scene_build *build, stru
         return true;
     }
     shape->material = (uint32_t)build->materials.items.count;
-    for (uint32_t i = 0; i < model->material_count; i++) {
-        struct scene_material *added = material_add(&build->materials, build->ctx, model->materials[i].name);
-        if (!added) return false;
-        char *name = added->name;
-        *added = model->materials[i];
-        added->name = name;
-    }
+    uint32_t *numbers = array_alloc(build->ctx, (size_t)model->texture_count + 1, sizeof *numbers, "textures");
+    bool done = numbers != NULL;
+    for (uint32_t i = 0; done && i < model->texture_count; i++)
+        done = texture_need(&build->textures, build->ctx, &model->textures[i], &numbers[i + 1]);
+    for (uint32_t i = 0; done && i < model->material_count; i++) done = take_material(build, &model->materials[i], numbers);
+    free(numbers);
+    if (!done) return false;
     for (size_t i = 0; shape->mesh.materials && i < shape->mesh.triangle_count; i++) shape->mesh.materials[i] += shape->material;
     return true;
 }

@@ -1,4 +1,4 @@
-// The scene file, format version 1: the document. Its parts are in json_view.c, json_material.c, json_light.c and json_shape.c.
+// The scene file, format version 1: the document. Its parts are in json_view.c, json_material.c, json_map.c, json_light.c and json_shape.c.
 #include "scene/frame.h"
 #include "scene/json_parts.h"
 
@@ -20,7 +20,8 @@ static bool read_scene(struct scene_build *build, const struct json_at *root) {
         !at_get_float3(root, "ambient", RANGE_NOT_NEGATIVE, scene->ambient) || !at_get_bool(root, "shadows", &scene->shadows) ||
         !part_camera(&scene->camera, root, &has_camera))
         return false;
-    if (!part_materials(build, root) || !part_lights(build, root) || !part_shapes(build, root) || !scene_derive(scene, build->ctx))
+    if (!part_environment(build, root) || !part_materials(build, root) || !part_lights(build, root) || !part_shapes(build, root) ||
+        !scene_derive(scene, build->ctx))
         return false;
     if (has_camera) return true;
     const struct scene_ball ball = scene_ball(scene);
