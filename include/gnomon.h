@@ -250,7 +250,8 @@ struct gn_verify_result {
     uint64_t wrong_hits;            // the first sample hit another object or primitive
     uint64_t ties;                  // of the wrong hits, those at the same depth: surfaces that coincide
     uint64_t nonfinite_pixels;      // of the device; one is enough to fail
-    uint64_t pixels_allowed;        // that may differ, and of wrong hits that are no ties: rounding may decide otherwise at an edge
+    uint64_t pixels_allowed;        // that may differ: rounding may decide otherwise at an edge; more of them with more samples
+    uint64_t hits_allowed;          // of wrong hits that are no ties
     double tolerance;
     double max_abs, rmse;           // over all colour channels
     uint32_t worst_x, worst_y;      // where max_abs is

@@ -65,8 +65,8 @@ static void each_limit_holds(void **state) {
         struct gn_error error;
         struct context ctx = context_make(NULL, &error);
         struct gn_verify_result result = {0};
-        assert_true(
-            verify_pictures(&result, NULL, &ctx, (struct verify_side){&a, &c, &e}, (struct verify_side){&b, &d, &f}, rows[row].tolerance));
+        assert_true(verify_pictures(&result, NULL, &ctx, (struct verify_side){&a, &c, &e}, (struct verify_side){&b, &d, &f}, 1,
+                                    rows[row].tolerance));
         if (result.pass != rows[row].pass) fail_msg("row %zu: pass is %d", row, result.pass);
         if ((int)result.pixels_differing != rows[row].differing) fail_msg("row %zu: %d pixels differ", row, (int)result.pixels_differing);
         if ((int)result.nonfinite_pixels != rows[row].nonfinite) fail_msg("row %zu: %d are not finite", row, (int)result.nonfinite_pixels);
@@ -83,7 +83,7 @@ static void what_the_device_dropped_fails(void **state) {
     struct context ctx = context_make(NULL, &error);
     struct gn_verify_result result = {.nonfinite_pixels = 1};
     const struct verify_side side = {&color, &id, &depth};
-    assert_true(verify_pictures(&result, NULL, &ctx, side, side, VERIFY_TOLERANCE));
+    assert_true(verify_pictures(&result, NULL, &ctx, side, side, 1, VERIFY_TOLERANCE));
     assert_false(result.pass);
 }
 
@@ -98,7 +98,7 @@ static void the_difference_and_the_worst_pixel(void **state) {
     struct context ctx = context_make(NULL, &error);
     struct gn_verify_result result = {0};
     assert_true(
-        verify_pictures(&result, &difference, &ctx, (struct verify_side){&a, &id, &depth}, (struct verify_side){&b, &id, &depth}, 0.1));
+        verify_pictures(&result, &difference, &ctx, (struct verify_side){&a, &id, &depth}, (struct verify_side){&b, &id, &depth}, 1, 0.1));
     for (int i = 0; i < 6; i++) assert_true(fabsf(difference.pixels[SIDE + i] - seen[i]) <= 1e-6f);
     assert_true(result.worst_x == 4 && result.worst_y == 1 && result.max_abs == 5);
     double rmse = sqrt((0.05 * 0.05 + 0.1 * 0.1 + 0.2 * 0.2 + 5 * 5) / (3 * PIXELS));
@@ -110,8 +110,11 @@ static void few_pixels_may_differ(void **state) {
     (void)state;
     static const struct {
         uint64_t pixels, allowed;
-    } sizes[] = {{1, 2}, {64, 2}, {20000, 2}, {30000, 3}, {262144, 26}, {4294836225u, 429483}};
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) assert_int_equal(verify_allowed(sizes[i].pixels), sizes[i].allowed);
+        uint32_t spp;
+    } sizes[] = {{1, 2, 1},       {64, 2, 1},  {20000, 2, 1},     {30000, 3, 1},       {262144, 26, 1},          {4294836225u, 429483, 1},
+                 {262144, 26, 0}, {64, 2, 16}, {518400, 129, 16}, {518400, 518, 1000}, {518400, 518, UINT32_MAX}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        assert_int_equal(verify_allowed(sizes[i].pixels, sizes[i].spp), sizes[i].allowed);
 }
 
 int main(void) {

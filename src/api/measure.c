@@ -33,8 +33,9 @@ bool gn_verify(struct gn_device *device, struct gn_scene *scene, const struct gn
     result->device = ours->stats, result->reference = theirs->stats;
     result->nonfinite_pixels = ours->stats.nonfinite_pixels;
     double tolerance = params->tolerance > 0 ? params->tolerance : VERIFY_TOLERANCE;
+    uint32_t spp = render.spp ? render.spp : scene->scene.film.spp;
     struct verify_side a = {&ours->color, &ours->id, &ours->depth}, b = {&theirs->color, &theirs->id, &theirs->depth};
-    if (!verify_pictures(result, difference ? &values : NULL, &ctx, a, b, tolerance)) goto done;
+    if (!verify_pictures(result, difference ? &values : NULL, &ctx, a, b, spp, tolerance)) goto done;
     if (difference && !(*difference = picture_of(&ctx, &values))) goto done;
 
 done:

@@ -54,8 +54,9 @@ static const struct command commands[] = {
             "numbers, and compares. A pixel differs when a colour channel, in linear light, is off by more than the tolerance (for "
             "values over 1: and by more than 2^-12 of the value). A hit is wrong when the first sample of a pixel hit another "
             "object or primitive, and a tie when it is at the right depth all the same, on a surface that coincides. Where an edge "
-            "passes within rounding of a sample either answer is legitimate, so 1 pixel in 10 000 (2 in a small picture) may "
-            "differ, and as many hits may be wrong that are no ties; no value may be NaN or infinite. Exit code 1 when the check fails.",
+            "passes within rounding of a sample either answer is legitimate, so 1 pixel in 10 000 may differ, and 1 in "
+            "100 000 more for each further sample (2 in a small picture), and 1 hit in 10 000 may be wrong that is no tie; no value "
+            "may be NaN or infinite. Exit code 1 when the check fails.",
         .examples = "  gnomon verify scenes/demo.json\n"
                     "  gnomon verify scene.json --size 256x256 --spp 4 -o difference.png\n"
                     "  gnomon verify scene.json --accuracy fast --json",

@@ -20,6 +20,7 @@ static json_t *as_json(const struct run *run, const struct gn_verify_result *res
         {"ties", json_integer((json_int_t)result->ties)},
         {"nonfinite_pixels", json_integer((json_int_t)result->nonfinite_pixels)},
         {"pixels_allowed", json_integer((json_int_t)result->pixels_allowed)},
+        {"hits_allowed", json_integer((json_int_t)result->hits_allowed)},
         {"tolerance", json_number(result->tolerance)},
         {"worst_x", json_integer(result->worst_x)},
         {"worst_y", json_integer(result->worst_y)},
@@ -34,10 +35,10 @@ static json_t *as_json(const struct run *run, const struct gn_verify_result *res
 static bool judge(struct run *run, const struct gn_verify_result *result) {
     char counts[256];
     snprintf(counts, sizeof counts,
-             "of %" PRIu64 " pixels %" PRIu64 " differ by more than %.3g, %" PRIu64 " hit something elsewhere (%" PRIu64
-             " of each may), %" PRIu64 " are ties, %" PRIu64 " not finite",
-             result->pixels, result->pixels_differing, result->tolerance, result->wrong_hits - result->ties, result->pixels_allowed,
-             result->ties, result->nonfinite_pixels);
+             "of %" PRIu64 " pixels %" PRIu64 " differ by more than %.3g (%" PRIu64 " may), %" PRIu64 " hit something elsewhere (%" PRIu64
+             " may), %" PRIu64 " are ties, %" PRIu64 " not finite",
+             result->pixels, result->pixels_differing, result->tolerance, result->pixels_allowed, result->wrong_hits - result->ties,
+             result->hits_allowed, result->ties, result->nonfinite_pixels);
     if (!result->pass)
         return run_fail(run, GN_CHECK_FAILED, "not the same: %s; largest difference %.3g at (%" PRIu32 ", %" PRIu32 "), RMSE %.3g", counts,
                         result->max_abs, result->worst_x, result->worst_y, result->rmse);

@@ -3,8 +3,9 @@
 
 #include <math.h>
 
-uint64_t verify_allowed(uint64_t pixels) {
-    uint64_t allowed = (uint64_t)(VERIFY_ALLOWED_FRACTION * (double)pixels);
+uint64_t verify_allowed(uint64_t pixels, uint32_t spp) {
+    double fraction = fmin(VERIFY_ALLOWED_FRACTION + VERIFY_ALLOWED_FURTHER * (spp > 1 ? spp - 1 : 0), VERIFY_ALLOWED_MOST);
+    uint64_t allowed = (uint64_t)(fraction * (double)pixels);
     return allowed < VERIFY_ALLOWED_LEAST ? VERIFY_ALLOWED_LEAST : allowed;
 }
 
@@ -46,7 +47,7 @@ static void add_hit(struct gn_verify_result *out, struct verify_side device, str
 }
 
 bool verify_pictures(struct gn_verify_result *out, struct image *difference, struct context *ctx, struct verify_side device,
-                     struct verify_side reference, double tolerance) {
+                     struct verify_side reference, uint32_t spp, double tolerance) {
     uint32_t width = device.color->width, height = device.color->height;
     if (reference.color->width != width || reference.color->height != height)
         return fail(ctx, GN_INTERNAL, "the device's picture and the reference's differ in size");
@@ -64,9 +65,10 @@ bool verify_pictures(struct gn_verify_result *out, struct image *difference, str
     }
     out->tolerance = tolerance;
     out->pixels = (uint64_t)width * height;
-    out->pixels_allowed = verify_allowed(out->pixels);
+    out->pixels_allowed = verify_allowed(out->pixels, spp);
+    out->hits_allowed = verify_allowed(out->pixels, 1);
     out->rmse = sqrt(squares / (3 * (double)out->pixels));
     out->pass =
-        out->pixels_differing <= out->pixels_allowed && out->wrong_hits - out->ties <= out->pixels_allowed && out->nonfinite_pixels == 0;
+        out->pixels_differing <= out->pixels_allowed && out->wrong_hits - out->ties <= out->hits_allowed && out->nonfinite_pixels == 0;
     return true;
 }
