@@ -66,32 +66,17 @@ double lobe_matte(double f0, double cos_o, double cos_i) {
 
 // -------------------------------------------------------------------------------------------------------------- samples
 
-// T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
-static void tangents(double t[3], double b[3], const double n[3]) {
-    double side = n[2] >= 0 ? 1 : -1, a = -1 / (side + n[2]), c = n[0] * n[1] * a;
-    t[0] = 1 + side * n[0] * n[0] * a, t[1] = side * c, t[2] = -side * n[0];
-    b[0] = c, b[1] = side + n[1] * n[1] * a, b[2] = -n[1];
-}
-
-// (sine·cos 2πv, sine·sin 2πv, cosine) in the frame of `axis`.
-static void around(double w[3], const double axis[3], double sine, double cosine, double v) {
-    double t[3], b[3], x = sine * cos(2 * REF_PI * v), y = sine * sin(2 * REF_PI * v);
-    tangents(t, b, axis);
-    for (int i = 0; i < 3; i++) w[i] = x * t[i] + y * b[i] + cosine * axis[i];
-    vector_normalize(w);
-}
-
 // The direction that a facet with normal h turns wo into; none where it is seen from behind.
 static void turn_by(double wi[3], const double h[3], const double wo[3]) {
     vector_mirror(wi, h, wo);
     for (int i = 0; i < 3; i++) wi[i] = vector_dot(wo, h) > 0 ? wi[i] : 0;
 }
 
-void lobe_cosine_sample(double wi[3], const double n[3], const float u[2]) { around(wi, n, sqrt(u[0]), sqrt(1 - (double)u[0]), u[1]); }
+void lobe_cosine_sample(double wi[3], const double n[3], const float u[2]) { vector_around(wi, n, sqrt(u[0]), sqrt(1 - (double)u[0]), u[1]); }
 
 static void power_sample(double w[3], const double axis[3], double exponent, const float u[2]) {
     double x = log1p(-(double)u[0]) / (exponent + 1);
-    around(w, axis, sqrt(-expm1(2 * x)), exp(x), u[1]);
+    vector_around(w, axis, sqrt(-expm1(2 * x)), exp(x), u[1]);
 }
 
 void lobe_phong_sample(double wi[3], const double n[3], const double wo[3], double exponent, const float u[2]) {
@@ -110,7 +95,7 @@ void lobe_blinn_sample(double wi[3], const double n[3], const double wo[3], doub
 // stretched direction's horizon, plus that direction.
 void lobe_ggx_sample(double wi[3], const double n[3], const double wo[3], double alpha, const float u[2]) {
     double t[3], b[3], h[3];
-    tangents(t, b, n);
+    vector_tangents(t, b, n);
     double w[3] = {alpha * vector_dot(t, wo), alpha * vector_dot(b, wo), vector_dot(n, wo)};
     vector_normalize(w);
     double z = (1 - (double)u[0]) * (1 + w[2]) - w[2], sine = sqrt(fmax((1 - z) * (1 + z), 0));

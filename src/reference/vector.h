@@ -25,4 +25,19 @@ static inline void vector_mirror(double r[3], const double n[3], const double a[
     vector_normalize(r);
 }
 
+// Two unit vectors that make a frame with the unit vector n. T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+static inline void vector_tangents(double t[3], double b[3], const double n[3]) {
+    double side = n[2] >= 0 ? 1 : -1, a = -1 / (side + n[2]), c = n[0] * n[1] * a;
+    t[0] = 1 + side * n[0] * n[0] * a, t[1] = side * c, t[2] = -side * n[0];
+    b[0] = c, b[1] = side + n[1] * n[1] * a, b[2] = -n[1];
+}
+
+// (sine·cos 2πv, sine·sin 2πv, cosine) in the frame of `axis`.
+static inline void vector_around(double w[3], const double axis[3], double sine, double cosine, double v) {
+    double t[3], b[3], angle = 2 * 3.14159265358979323846 * v, x = sine * cos(angle), y = sine * sin(angle);
+    vector_tangents(t, b, axis);
+    for (int i = 0; i < 3; i++) w[i] = x * t[i] + y * b[i] + cosine * axis[i];
+    vector_normalize(w);
+}
+
 #endif

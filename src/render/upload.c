@@ -8,6 +8,7 @@
 #include "render/base.h"
 #include "render/upload_lights.h"
 #include "scene/area_lights.h"
+#include "scene/fog.h"
 
 // What the fill functions need. `inner` numbers the inner nodes, `slot` the primitives of each kind in leaf order.
 struct upload {
@@ -347,31 +348,17 @@ static bool fill_emitters(void *data, void *to, uint64_t offset, uint64_t size) 
     return true;
 }
 
-// The ball that fog fills: around the middle of the scene, with all shapes and the camera in it.
-static void fog_ball(const struct upload *u, float ball[4]) {
-    const struct scene *scene = u->scene;
-    double eye2 = 0, corner2 = 0;
-    for (int i = 0; i < 3; i++) {
-        bool empty = !(scene->bounds_min[i] <= scene->bounds_max[i]);
-        double low = empty ? scene->camera.position[i] : scene->bounds_min[i], high = empty ? scene->camera.position[i] : scene->bounds_max[i];
-        double middle = 0.5 * (low + high), eye = scene->camera.position[i] - middle, corner = 0.5 * (high - low);
-        eye2 += eye * eye;
-        corner2 += corner * corner;
-        ball[i] = (float)((middle - u->base[i]) * u->scale);
-    }
-    ball[3] = (float)(1.0001 * sqrt(fmax(eye2, corner2)) * u->scale);
-}
-
 static bool fill_globals(void *data, void *to, uint64_t offset, uint64_t size) {
     const struct upload *u = data;
     const struct scene *scene = u->scene;
-    float ball[4];
-    fog_ball(u, ball);
+    const struct fog_ball fog = scene_fog_ball(scene);
+    float center[3];
+    for (int i = 0; i < 3; i++) center[i] = (float)((fog.center[i] - u->base[i]) * u->scale);
     struct word4 words[GLOBAL_WORDS] = {
         word4_of(scene->background, scene->paths.max_depth),
         word4_of(scene->ambient, scene->paths.roulette_depth),
         word4_of(scene->fog.albedo, float_bits(scene->fog.density / u->scale)),
-        word4_of(ball, float_bits(ball[3])),
+        word4_of(center, float_bits((float)(fog.radius * u->scale))),
         {{float_bits(scene->fog.anisotropy), 0, 0, 0}},
     };
     memcpy(to, (const char *)words + offset, size);
