@@ -29,7 +29,7 @@ struct bsdf {
     real shininess;     // exponent; of metallic-roughness α
 };
 
-// From a material, with the textures already in it.
+// From a material, with the textures already in it. Of glass nothing is left: dielectric.glsl does it all.
 bsdf bsdf_make(uint model, real3 diffuse, real3 specular, real shininess, real3 reflection, real metallic, real roughness, real ior) {
     bool has_highlight = (HAS_SPECULAR && model == PHONG_MODEL) || (HAS_BLINN && model == BLINN_PHONG_MODEL);
     bsdf b = bsdf(model, diffuse, has_highlight ? specular : real3(0.0), reflection, shininess);
@@ -39,10 +39,8 @@ bsdf bsdf_make(uint model, real3 diffuse, real3 specular, real shininess, real3 
         b.diffuse = diffuse * (1.0 - metallic);
         b.shininess = ggx_alpha(roughness);
     }
-    if (model == MIRROR_MODEL) {
-        b.reflection = diffuse;
-        b.diffuse = real3(0.0);
-    }
+    if (model == MIRROR_MODEL) b.reflection = diffuse;
+    if (model == MIRROR_MODEL || model == DIELECTRIC_MODEL) b.diffuse = real3(0.0);
     return b;
 }
 

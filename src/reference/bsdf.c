@@ -33,7 +33,8 @@ static double color(const struct ref_bsdf *b, enum lobe lobe, int i) {
         if (!runs(b, EFFECT_REFLECTION)) return 0;
         return b->model == MODEL_MIRROR ? b->diffuse[i] : b->reflection[i];
     case LOBE_DIFFUSE:
-        return runs(b, EFFECT_DIFFUSE) && b->model != MODEL_MIRROR ? b->diffuse[i] * (1 - metal) : 0;
+        if (b->model == MODEL_MIRROR || b->model == MODEL_DIELECTRIC) return 0;
+        return runs(b, EFFECT_DIFFUSE) ? b->diffuse[i] * (1 - metal) : 0;
     default:
         if (is_ggx(b)) return (1 - metal) * pow((b->ior - 1) / (b->ior + 1), 2) + metal * b->diffuse[i];
         if (b->model == MODEL_PHONG && runs(b, EFFECT_SPECULAR)) return b->specular[i];
