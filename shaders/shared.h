@@ -227,6 +227,8 @@
 #define STRESS_UNIT_INTERVAL 5u     // two words of random bits
 #define STRESS_TRIANGLE 6u          // o, d, v0, v1, v2: what the exact tier's filter says; lo, hi, and 1 for a certain hit, -1 for a certain miss, else 0
 #define STRESS_SPHERE 7u            // o, d, center, radius, -1 or +1 for the root: the same
+#define STRESS_DISK 8u              // u, v: a point of the lens
+#define STRESS_LENS 9u              // direction, du, dv, aim, u, v: the direction through that point
 #define STRESS_NUMBERS_IN 16u
 #define STRESS_BOX_IN 14u
 #define STRESS_LEAVE_IN 9u

@@ -35,6 +35,11 @@ void main() {
         answer = real3(camera_direction(corner, du, dv, pixel, vec2(given[at + 11u], given[at + 12u])));
     } else if (args.what == STRESS_UNIT_INTERVAL) {
         answer.xy = real2(unit_interval(floatBitsToUint(vec2(given[at], given[at + 1u]))));
+    } else if (args.what == STRESS_DISK) {
+        answer.xy = real2(camera_disk_point(vec2(given[at], given[at + 1u])));
+    } else if (args.what == STRESS_LENS) {
+        vec2 point = camera_disk_point(vec2(given[at + 10u], given[at + 11u]));
+        answer = real3(camera_add(vec3(given3(at)), -camera_lens_point(point, given[at + 9u], vec3(given3(at + 3u)), vec3(given3(at + 6u)))));
     } else if (args.what == STRESS_TRIANGLE) {
         ray r = ray_make(given3(at), given3(at + 3u), 0.0, INFINITY, SELF_NONE);
         answer = told(triangle_exact(r.o, shear_make(r.d), given3(at + 6u), given3(at + 9u), given3(at + 12u)));

@@ -6,6 +6,7 @@
 
 #include "measure/stress/job.h"
 #include "measure/stress/oracle.h"
+#include "render/camera.h"
 
 #define BITS 256
 #define UNIT 0x1p-24 // roundoff of fp32
@@ -231,6 +232,65 @@ static void last_pixel(struct number_case *out, struct random *random, uint32_t 
     }
 }
 
+// ------------------------------------------------------------------------------------------------------------------ lens
+
+// A number of the sampler's: next to 1/2, or any.
+static float sample_number(struct random *random, bool near) {
+    return near ? 0.5f + (float)((int)random_below(random, 9) - 4) * 0x1p-24f : (float)(random_bits(random) >> 8) * 0x1p-24f;
+}
+
+// P. Shirley and K. Chiu's map: the distance from the middle is the square's, the angle how far around the square.
+static void exact_disk(double point[2], const float u[2]) {
+    const double a = 2.0 * u[0] - 1, b = 2.0 * u[1] - 1; // exact
+    const bool wide = fabs(a) > fabs(b);
+    const double r = wide ? a : b, side = wide ? b : a;
+    mpfr_t angle, sine, cosine;
+    mpfr_inits2(BITS, angle, sine, cosine, (mpfr_ptr)0);
+    mpfr_const_pi(angle, MPFR_RNDN);
+    mpfr_mul_d(angle, angle, side / 4, MPFR_RNDN);
+    mpfr_div_d(angle, angle, r != 0 ? r : 1, MPFR_RNDN);
+    mpfr_sin_cos(sine, cosine, angle, MPFR_RNDN);
+    mpfr_mul_d(sine, sine, r, MPFR_RNDN);
+    mpfr_mul_d(cosine, cosine, r, MPFR_RNDN);
+    point[0] = mpfr_get_d(wide ? cosine : sine, MPFR_RNDN);
+    point[1] = mpfr_get_d(wide ? sine : cosine, MPFR_RNDN);
+    mpfr_clears(angle, sine, cosine, (mpfr_ptr)0);
+}
+
+// C09: the middle, what is next to it, the rims and all else; off by 8 ulp of the distance from the middle.
+static void disk(struct number_case *out, struct random *random, uint32_t i) {
+    for (int k = 0; k < 2; k++) out->in[k] = i == 0 ? 0.5f : i % 16 == 1 ? 0 : sample_number(random, i % 4 == 0);
+    exact_disk(out->right, out->in);
+    double distance = hypot(out->right[0], out->right[1]);
+    for (int k = 0; k < 2; k++) out->slack[k] = 8 * UNIT * distance;
+}
+
+// C05: of a pixel's direction through a point of the lens. Without a radius, or with the focus at infinity, it is the pinhole's, to the bit.
+static void lens(struct number_case *out, struct random *random, uint32_t i) {
+    static const float distances[] = {1e-6f, 1, 1e6f, INFINITY};
+    struct scene_camera camera = {.up = {0, 1, 0}, .fov_y_deg = (float)random_in(random, 1, 150), .focus_distance = distances[i / 2 % 4]};
+    if (i % 2) camera.lens_radius = (float)random_in(random, 1e-3, 1);
+    struct camera_rays rays;
+    double view[3], point[2];
+    random_direction(view, random);
+    for (int k = 0; k < 3; k++) camera.look_at[k] = (float)view[k];
+    camera_rays_make(&rays, &camera, 640, 480);
+    const struct camera_sample sample = {.offset = {0.5f, 0.5f}};
+    const struct gn_ray pinhole = camera_ray(&rays, random_below(random, 640), random_below(random, 480), &sample);
+    const float *du = rays.frames[0].du, *dv = rays.frames[0].dv;
+    memcpy(out->in, pinhole.direction, sizeof pinhole.direction);
+    memcpy(out->in + 3, du, 3 * sizeof *du);
+    memcpy(out->in + 6, dv, 3 * sizeof *dv);
+    out->in[9] = rays.aim;
+    for (int k = 10; k < 12; k++) out->in[k] = sample_number(random, false);
+    exact_disk(point, out->in + 10);
+    for (int k = 0; k < 3; k++) {
+        const double x = rays.aim * point[0] * du[k], y = rays.aim * point[1] * dv[k];
+        out->right[k] = pinhole.direction[k] - (x + y);
+        out->slack[k] = rays.aim > 0 ? UNIT * (fabs(out->right[k]) + 8 * rays.aim * (fabs((double)du[k]) + fabs((double)dv[k]))) : 0;
+    }
+}
+
 // --------------------------------------------------------------------------------------------------------------- judging
 
 // Right if within the slack; an answer too large for fp32 may be infinite.
@@ -297,6 +357,7 @@ static const struct number_function power = {.what = STRESS_POWER, .wide = true}
 static const struct number_function phong = {.what = STRESS_PHONG, .wide = true}, specular = {.what = STRESS_PHONG};
 static const struct number_function normalize = {.what = STRESS_NORMALIZE, .wide = true}, light = {.what = STRESS_LIGHT, .wide = true};
 static const struct number_function unit_interval = {.what = STRESS_UNIT_INTERVAL}, direction = {.what = STRESS_CAMERA};
+static const struct number_function disk_point = {.what = STRESS_DISK}, through_lens = {.what = STRESS_LENS};
 
 bool numbers_opposite_light(struct stress *s) { return run_numbers(s, phong, opposite_light); }
 bool numbers_power_of_nothing(struct stress *s) { return run_numbers(s, power, power_of_nothing); }
@@ -309,3 +370,5 @@ bool numbers_light_at_point(struct stress *s) { return run_numbers(s, light, lig
 bool numbers_light_far_away(struct stress *s) { return run_numbers(s, light, light_far_away); }
 bool numbers_random(struct stress *s) { return run_numbers(s, unit_interval, random_numbers); }
 bool numbers_last_pixel(struct stress *s) { return run_numbers(s, direction, last_pixel); }
+bool numbers_disk(struct stress *s) { return run_numbers(s, disk_point, disk); }
+bool numbers_lens(struct stress *s) { return run_numbers(s, through_lens, lens); }

@@ -85,6 +85,8 @@ bool numbers_light_at_point(struct stress *s);
 bool numbers_light_far_away(struct stress *s);
 bool numbers_random(struct stress *s);
 bool numbers_last_pixel(struct stress *s);
+bool numbers_disk(struct stress *s);
+bool numbers_lens(struct stress *s);
 
 // Samples and pixels (film.c).
 bool film_many_ones(struct stress *s);
