@@ -128,7 +128,7 @@ static const struct {
     {"circle.gltf", ":5:13: nodes[0] is its own parent or has more than 500 above it, expected a tree"},
     {"draco.gltf", ":10:26: extensionsRequired[0] is KHR_draco_mesh_compression, which is not supported"},
     {"index_large.gltf", ":6:30: meshes[0].primitives[0] has index 3 at 2, expected at most 2"},
-    {"nan.gltf", ": vertex 1 of mesh 'meshes[0]' is (1, nan, 0), expected finite numbers"},
+    {"nan.gltf", ": vertex 1 of meshes[0] is (1, nan, 0), expected finite numbers"},
     {"no_mesh.gltf", ": has no triangles, expected at least one"},
     {"syntax.gltf", ":1:11: not valid JSON: unexpected token near '}'"},
     {"two_parents.gltf", ":5:57: nodes[1].children[0] is node 2, which has a parent already, expected a tree"},

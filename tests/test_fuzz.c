@@ -142,16 +142,19 @@ static void make_stl_ascii(struct sample *s) {
 }
 
 #define GLTF_HEAD                                                                                                                          \
-    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,2]}],\"nodes\":[{\"mesh\":0,\"children\":[1],"                 \
-    "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,1,2,3,1]},{\"camera\":0,\"rotation\":[0,0,0,1],\"scale\":[1,2,3]},{\"translation\":[0,5,0],"      \
-    "\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,"         \
-    "\"znear\":1}}],\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":"          \
-    "\"point\",\"color\":[1,1,1],\"intensity\":50}]}},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0},"         \
-    "\"indices\":1,\"material\":0},{\"attributes\":{\"POSITION\":0},\"mode\":5}]}],\"materials\":[{\"name\":\"m\","                        \
-    "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0,0,1],\"roughnessFactor\":0.5}}],\"accessors\":[{\"bufferView\":0,"                 \
-    "\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"count\":12,\"type\":\"SCALAR\"}],"   \
-    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}],\"buffers\":[{\"byteLength\":"  \
-    "60"
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,2]}],\"nodes\":[{\"mesh\":0,\"children\":[1],\"matrix\""       \
+    ":[1,0,0,0,0,1,0,0,0,0,1,0,1,2,3,1]},{\"camera\":0,\"rotation\":[0,0,0,1],\"scale\":[1,2,3]},{\"translation\":[0,5,0],\"extensi"       \
+    "ons\":{\"KHR_lights_punctual\":{\"light\":0}}}],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1"       \
+    "}}],\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\",\"co"       \
+    "lor\":[1,1,1],\"intensity\":50}]}},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":0,\"TEXCOORD_0\":2}"       \
+    ",\"indices\":1,\"material\":0},{\"attributes\":{\"POSITION\":0},\"mode\":5}]}],\"materials\":[{\"name\":\"m\",\"pbrMetallicRou"       \
+    "ghness\":{\"baseColorFactor\":[1,0,0,1],\"roughnessFactor\":0.5,\"baseColorTexture\":{\"index\":0,\"extensions\":{\"KHR_textur"       \
+    "e_transform\":{\"scale\":[2,2]}}}},\"alphaMode\":\"BLEND\",\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFacto"       \
+    "r\":1},\"KHR_materials_volume\":{\"thicknessFactor\":1}}}],\"textures\":[{\"source\":0,\"sampler\":0}],\"samplers\":[{\"wrapS\""      \
+    ":33071}],\"images\":[{\"uri\":\"data:;base64,Iz9SQURJQU5DRQpGT1JNQVQ9MzItYml0X3JsZV9yZ2JlCgotWSAxICtYIDEKgEAggQ==\"}],\"access"       \
+    "ors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5121,\"coun"       \
+    "t\":12,\"type\":\"SCALAR\"},{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"}],\"bufferViews\":[{\"buffe"       \
+    "r\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}],\"buffers\":[{\"byteLength\":60"
 
 static void make_glb(struct sample *s) {
     static const char json[] = GLTF_HEAD "}]}";

@@ -8,6 +8,8 @@
 
 #include <assimp/material.h>
 
+#include "scene/frame.h"
+
 static const double PI = 3.14159265358979323846;
 
 // ---------------------------------------------------------------------------------------------------------------- materials
@@ -75,8 +77,6 @@ static void transform_vector(double out[3], const struct transform *t, struct ai
     for (int i = 0; i < 3; i++) out[i] = t->m[i][0] * v.x + t->m[i][1] * v.y + t->m[i][2] * v.z + t->m[i][3] * w;
 }
 
-static double length(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 static bool store(float to[3], const double from[3]) {
     for (int i = 0; i < 3; i++) {
         if (!(fabs(from[i]) <= FLT_MAX)) return false;
@@ -86,18 +86,12 @@ static bool store(float to[3], const double from[3]) {
 }
 
 bool look_camera(struct scene_camera *out, const struct aiCamera *camera, const struct transform *node) {
-    double position[3], view[3], up[3], look_at[3];
+    double position[3], view[3], up[3];
     transform_vector(position, node, camera->mPosition, 1);
     transform_vector(view, node, camera->mLookAt, 0);
     transform_vector(up, node, camera->mUp, 0);
     const double aspect = camera->mAspect > 0 ? camera->mAspect : 1;
-    const double fov = 2 * atan(tan(0.5 * camera->mHorizontalFOV) / aspect);
-    // A point so far away that its rounding to fp32 does not turn the view.
-    const double distance = fmax(1, length(position)) / length(view), up_length = length(up);
-    for (int i = 0; i < 3; i++) look_at[i] = position[i] + distance * view[i], up[i] /= up_length;
-    *out = (struct scene_camera){.fov_y_deg = (float)(fov * (180 / PI))};
-    return store(out->position, position) && store(out->look_at, look_at) && store(out->up, up) && out->fov_y_deg > 0 &&
-           out->fov_y_deg < 180;
+    return frame_view(out, position, view, up, 2 * atan(tan(0.5 * camera->mHorizontalFOV) / aspect) * (180 / PI));
 }
 
 bool look_light(struct scene_light *out, const struct aiLight *light, const struct transform *node) {

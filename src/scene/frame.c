@@ -78,6 +78,19 @@ static void cross(double out[3], const double a[3], const double b[3]) {
     for (int i = 0; i < 3; i++) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
+bool frame_view(struct scene_camera *camera, const double position[3], const double view[3], const double up[3], double fov_y_deg) {
+    double across[3], look_at[3], upward[3] = {up[0], up[1], up[2]}, forward[3] = {view[0], view[1], view[2]};
+    unit(forward);
+    unit(upward);
+    cross(across, forward, upward);
+    // A point so far away that its rounding to fp32 does not turn the view.
+    const double distance = fmax(1, sqrt(position[0] * position[0] + position[1] * position[1] + position[2] * position[2]));
+    for (int i = 0; i < 3; i++) look_at[i] = position[i] + distance * forward[i];
+    *camera = (struct scene_camera){.fov_y_deg = (float)fov_y_deg};
+    return store(camera->position, position) && store(camera->look_at, look_at) && store(camera->up, upward) && camera->fov_y_deg > 0 &&
+           camera->fov_y_deg < 180 && across[0] * across[0] + across[1] * across[1] + across[2] * across[2] > 1e-12;
+}
+
 void frame_lights(struct scene_light lights[2], const struct scene_camera *camera, const struct scene_ball *ball) {
     // In units of the radius: to the right, up, and towards the camera.
     static const struct {
@@ -109,7 +122,7 @@ void frame_exposure(struct scene_light *lights, uint32_t count, const struct sce
             brightest = fmax(brightest, lights[k].intensity[i]);
         }
         square = fmax(square, ball->radius * ball->radius); // a light inside shines on what is about a radius away
-        total += lights[k].falloff == FALLOFF_NONE ? brightest : brightest / square;
+        total += lights[k].falloff == FALLOFF_NONE || lights[k].type == LIGHT_DIRECTIONAL ? brightest : brightest / square;
     }
     if (!(total > 0)) return;
     for (uint32_t k = 0; k < count; k++)

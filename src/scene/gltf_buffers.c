@@ -98,15 +98,34 @@ static char *append(struct gltf_buffers *buffers, struct context *ctx, size_t si
     return room;
 }
 
-static bool load_file(struct gltf_buffers *out, const struct json_at *at, const char *uri, size_t size) {
-    struct context *ctx = at->file->ctx;
+char *gltf_uri_path(const struct json_at *at, const char *uri) {
     char *path = path_beside(at->file->path, uri);
-    if (!path) return fail(ctx, GN_LIMIT, "no memory for a path");
+    if (!path) {
+        fail(at->file->ctx, GN_LIMIT, "no memory for a path");
+        return NULL;
+    }
     percent_decode(path + (strlen(path) - strlen(uri)));
     const char *trouble = path_unreadable(path);
+    if (!trouble) return path;
+    at_fail(at, "is \"%s\", expected a file that can be read: %s", excerpt_word(uri).text, trouble);
+    free(path);
+    return NULL;
+}
+
+bool gltf_uri_data(struct file_bytes *out, const struct json_at *at, const char *uri) {
+    const char *base64 = strstr(uri, ";base64,");
+    if (!base64) return at_fail(at, "is a data URI of another kind, expected base64");
+    base64 += strlen(";base64,");
+    out->data = array_alloc(at->file->ctx, strlen(base64) * 3 / 4 + 1, 1, "a data URI");
+    if (out->data) out->size = base64_decode(out->data, strlen(base64) * 3 / 4, base64);
+    return out->data != NULL;
+}
+
+static bool load_file(struct gltf_buffers *out, const struct json_at *at, const char *uri, size_t size) {
+    struct context *ctx = at->file->ctx;
+    char *path = gltf_uri_path(at, uri);
     struct file_bytes file = {0};
-    bool done = trouble ? at_fail(at, "is \"%s\", expected a file that can be read: %s", excerpt_word(uri).text, trouble)
-                        : file_read(&file, ctx, path, GN_SCENE);
+    bool done = path && file_read(&file, ctx, path, GN_SCENE);
     if (done && file.size < size) done = at_fail(at, "is \"%s\" of %zu bytes, expected %zu", excerpt_word(uri).text, file.size, size);
     char *room = done ? append(out, ctx, size) : NULL;
     if (room) memcpy(room, file.data, size);

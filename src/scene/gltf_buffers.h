@@ -24,6 +24,10 @@ struct gltf_place {
 
 // Loads the buffers of a document: the binary chunk, data URIs, files beside it.
 bool gltf_buffers_init(struct gltf_buffers *out, const struct json_at *root, struct gltf_span binary);
+// The path that a URI names, as seen from the document; to be freed. A fault when it cannot be read.
+char *gltf_uri_path(const struct json_at *at, const char *uri);
+// The bytes of a data URI.
+bool gltf_uri_data(struct file_bytes *out, const struct json_at *at, const char *uri);
 void gltf_buffers_finish(struct gltf_buffers *buffers);
 
 #endif

@@ -12,7 +12,8 @@ bool model_load(struct model *out, struct context *ctx, const char *path) {
     static const struct {
         const char *suffix;
         bool (*load)(struct model *, struct context *, const char *);
-    } readers[] = {{"ply", model_load_ply}, {"obj", model_load_obj}, {"stl", model_load_stl}};
+    } readers[] = {
+        {"ply", model_load_ply}, {"obj", model_load_obj}, {"stl", model_load_stl}, {"gltf", model_load_gltf}, {"glb", model_load_gltf}};
     char suffix[16];
     path_suffix(path, suffix, sizeof suffix);
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)

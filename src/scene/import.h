@@ -1,5 +1,5 @@
-// Meshes from files: our own readers for PLY, OBJ and STL, whose numbers must become the nearest fp32 and whose faces must keep the
-// file's order; Assimp for glTF and the rest.
+// Meshes from files: our own readers for PLY, OBJ, STL and glTF, whose numbers must become the nearest fp32 and whose faces must keep the
+// file's order; Assimp for the rest.
 //
 // A polygon becomes a fan around its first vertex, in order, so that `primitive` counts triangles in file order. Bad content
 // is GN_SCENE with file, line (or byte offset for binary files) and what was expected.
@@ -17,7 +17,7 @@ struct model {
     uint32_t texture_count;
     struct scene_camera *cameras; // as far as the file has them
     uint32_t camera_count;
-    struct scene_light *lights; // intensities in the file's unit
+    struct scene_light *lights; // with the intensities of glTF in ours, of others in the file's unit
     uint32_t light_count;
 };
 
@@ -28,6 +28,7 @@ void model_finish(struct model *model);
 bool model_load_ply(struct model *out, struct context *ctx, const char *path);
 bool model_load_obj(struct model *out, struct context *ctx, const char *path);
 bool model_load_stl(struct model *out, struct context *ctx, const char *path);
+bool model_load_gltf(struct model *out, struct context *ctx, const char *path);
 bool model_load_assimp(struct model *out, struct context *ctx, const char *path);
 
 #endif

@@ -1,4 +1,4 @@
-// Meshes by way of Assimp: glTF, repacked first, and whatever else it reads. All meshes of all nodes become one, depth first; polygons are
+// Meshes by way of Assimp, of whatever it reads. All meshes of all nodes become one, depth first; polygons are
 // fanned here, points and lines left out.
 #include "scene/import.h"
 
@@ -6,9 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "scene/assimp_look.h"
-#include "scene/gltf.h"
 #include "scene/material.h"
 #include "scene/words.h"
 
@@ -22,7 +20,6 @@ struct import {
     struct context *ctx;
     const char *path;
     const struct aiScene *scene;
-    bool gltf;
     bool filling;                 // the second walk
     uint64_t vertices, triangles; // counted, or filled so far
     bool has_normals;
@@ -32,12 +29,6 @@ struct import {
     struct transform cameras[MOST_CAMERAS], *lights; // of the nodes they hang on
     unsigned camera_count, light_count;
 };
-
-static bool is_suffix(const char *path, const char *suffix) {
-    char actual[16];
-    path_suffix(path, actual, sizeof actual);
-    return strcmp(actual, suffix) == 0;
-}
 
 static struct transform node_transform(const struct aiNode *node) {
     const struct aiMatrix4x4 *m = &node->mTransformation;
@@ -155,9 +146,7 @@ static bool take_cameras(struct model *out, struct import *import) {
     out->cameras = array_alloc(import->ctx, import->camera_count, sizeof *out->cameras, "cameras");
     if (!out->cameras) return false;
     for (unsigned i = 0; i < import->camera_count; i++) {
-        struct aiCamera camera = *import->scene->mCameras[i];
-        if (import->gltf) camera.mPosition = (struct aiVector3D){0, 0, 0}; // Assimp has the node's translation there once more
-        if (look_camera(&out->cameras[out->camera_count], &camera, &import->cameras[i]))
+        if (look_camera(&out->cameras[out->camera_count], import->scene->mCameras[i], &import->cameras[i]))
             out->camera_count++;
         else
             notify(import->ctx, GN_LEVEL_WARNING, "%s: camera %u cannot be used; it is left out", import->path, i);
@@ -222,29 +211,22 @@ static bool take_scene(struct model *out, struct import *import) {
     return true;
 }
 
-static const struct aiScene *read_scene(struct context *ctx, const char *path, bool gltf) {
-    struct file_bytes glb = {0};
-    if (gltf && !gltf_repack(&glb, ctx, path)) return NULL;
-    if (!gltf && aiIsExtensionSupported(strrchr(path, '.') ? strrchr(path, '.') : "") != AI_TRUE) {
+static const struct aiScene *read_scene(struct context *ctx, const char *path) {
+    if (aiIsExtensionSupported(strrchr(path, '.') ? strrchr(path, '.') : "") != AI_TRUE) {
         fail(ctx, GN_SCENE,
              "%s: is no scene (.json) and no model that can be read, expected .obj, .ply, .stl, .gltf, .glb, or what Assimp reads", path);
         return NULL;
     }
-    if (!progress(ctx, "scene", 0, -1)) {
-        file_bytes_finish(&glb);
-        return NULL;
-    }
-    const struct aiScene *scene = gltf ? aiImportFileFromMemory(glb.data, (unsigned)glb.size, 0, "glb") : aiImportFile(path, 0);
+    if (!progress(ctx, "scene", 0, -1)) return NULL;
+    const struct aiScene *scene = aiImportFile(path, 0);
     if (!scene) fail(ctx, GN_SCENE, "%s: Assimp cannot read it: %s", path, aiGetErrorString());
-    file_bytes_finish(&glb);
     return scene;
 }
 
 bool model_load_assimp(struct model *out, struct context *ctx, const char *path) {
     *out = (struct model){0};
-    struct import import = {
-        .ctx = ctx, .path = path, .gltf = is_suffix(path, "gltf") || is_suffix(path, "glb"), .materials = MATERIAL_TABLE};
-    import.scene = read_scene(ctx, path, import.gltf);
+    struct import import = {.ctx = ctx, .path = path, .materials = MATERIAL_TABLE};
+    import.scene = read_scene(ctx, path);
     if (!import.scene) return false;
     const bool done = take_scene(out, &import);
     aiReleaseImport(import.scene);
