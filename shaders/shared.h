@@ -108,21 +108,37 @@
 // Node: 4 word4. A node holds the boxes of its two children and what they are.
 //   0: left min.xyz,  left ref      1: left max.xyz,  right ref
 //   2: right min.xyz, unused        3: right max.xyz, unused
-// A reference: an inner node's number; or a leaf: bit 31, bit 30 for spheres, bits 26–29 the count minus 1, bits 0–25 the first primitive;
-// or REF_NONE, a child that is not there (its box is empty).
+// A reference: an inner node's number; or a leaf: bit 31, bit 30 for spheres, bits 26–28 the count minus 1, bits 0–25 the first primitive;
+// or an instance: bits 31 and 29, bits 0–25 the word of its record; or REF_NONE, a child that is not there (its box is empty).
+// REF_RETURN on a traversal's stack: an instance is left.
 #define NODE_WORDS 4
 #define REF_LEAF 0x80000000u
 #define REF_SPHERES 0x40000000u
+#define REF_INSTANCE 0x20000000u
 #define REF_COUNT_SHIFT 26
 #define REF_FIRST_MASK 0x03ffffffu
 #define REF_NONE 0xffffffffu
+#define REF_RETURN 0xa0000000u
 
 // Triangle: 3 word4:  v0.xyz, object    v1.xyz, primitive    v2.xyz, material
+// Those of parts, which instances draw, come last: their vertices are in scene units and the part's coordinates, their object is 0.
 #define TRIANGLE_WORDS 3
-// Sphere: 2 word4:  center.xyz, radius    object, material, 0, 0
+// Sphere: 2 word4:  center.xyz, radius    object, material, word of its record in INSTANCES if it moves else 0, 0
 #define SPHERE_WORDS 2
 // Object: 1 word4:  first word of its triangles in INDICES or NO_ATTRIBUTES, number of the light that it is or NO_LIGHT, 0, 0
 #define OBJECT_WORDS 1
+// Instances: the words of the objects' records, four to a word4, 0 for those that have none; then the records, of INSTANCE_WORDS word4 (instance.glsl says how they
+// are used; a moving sphere's has only its center, as column 3, motion and base):
+//   0: column 0 of the placement, object                          1: column 1, offset of the numbers of its triangles from those in leaf order
+//   2: column 2, material for all of it or NO_MATERIAL            3: column 3, reference of its part's root
+//   4: motion, 0                                                  5: base and scale, as render/upload.h has them
+//   6, 7, 8: rows of the inverse that takes device units to the part's, slack along each axis     9: what it takes to 0, 0
+#define INSTANCE_WORDS 10
+#define INSTANCE_MOTION 4u
+#define INSTANCE_BASE 5u
+#define INSTANCE_INVERSE 6u
+#define INSTANCE_CENTER 9u
+#define NO_MATERIAL 0xffffffffu
 #define NO_ATTRIBUTES 0xffffffffu
 #define NO_LIGHT 0xffffffffu
 // Material: 15 word4. Maps are two each: row 0 of the transform, texture or NO_TEXTURE_WORD; row 1, 1 for sRGB.
@@ -207,7 +223,7 @@
 #define PENDING_ASKS 1u
 #define PENDING_ANSWERED 2u
 
-// Stack entries of a traversal: BVH_MAX_DEPTH + 2.
+// Stack entries of a traversal: BVH_MAX_DEPTH + 2; twice that where there are instances.
 #define STACK_SIZE 64
 
 // Invocations of a workgroup, and the square tile of pixels it renders.

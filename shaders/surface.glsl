@@ -5,7 +5,7 @@
 #include "tier_fast.glsl"
 #include "tier_robust.glsl"
 #include "constants.glsl"
-#include "words.glsl"
+#include "instance.glsl"
 
 layout(set = 0, binding = BINDING_OBJECTS) uniform usamplerBuffer object_words;
 layout(set = 0, binding = BINDING_MATERIALS) uniform usamplerBuffer material_words;
@@ -40,23 +40,21 @@ real3 smooth_normal(hit h, real3 ng) {
     real3 n0 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.x)).xyz));
     real3 n1 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.y)).xyz));
     real3 n2 = real3(uintBitsToFloat(texelFetch(normal_words, int(vertex.z)).xyz));
-    real3 n = normalize_any((1.0 - h.u - h.v) * n0 + h.u * n1 + h.v * n2);
+    real3 n = normalize_any(placed_normal((1.0 - h.u - h.v) * n0 + h.u * n1 + h.v * n2, h.object));
     return dot(n, n) > 0.5 ? n : ng;
 }
 
 // The point from the barycentrics, the base added last: four roundings of the offset, two of the sum.
-surface triangle_surface(hit h) {
-    uvec4 w0 = triangle_word(TRIANGLE_WORDS * h.primitive);
-    uvec4 w1 = triangle_word(TRIANGLE_WORDS * h.primitive + 1u);
-    uvec4 w2 = triangle_word(TRIANGLE_WORDS * h.primitive + 2u);
-    real3 v0 = real3(uintBitsToFloat(w0.xyz));
-    precise real3 e1 = real3(uintBitsToFloat(w1.xyz)) - v0;
-    precise real3 e2 = real3(uintBitsToFloat(w2.xyz)) - v0;
+surface triangle_surface(hit h, float time) {
+    real3 v0, v1, v2;
+    uint material = triangle_vertices(h, time, v0, v1, v2);
+    precise real3 e1 = v1 - v0;
+    precise real3 e2 = v2 - v0;
     precise real3 p = v0 + (h.u * e1 + h.v * e2);
     real3 error = (abs(h.u * e1) + abs(h.v * e2)) * (4.0 * REAL_UNIT) + abs(p) * (2.0 * REAL_UNIT);
     real3 ng = normalize_tier(cross_precise(e1, e2));
     real3 n = HAS_SMOOTH_NORMALS ? smooth_normal(h, ng) : ng;
-    return surface(p, error, ng, n, w2.w, h.primitive);
+    return surface(p, error, ng, n, material, h.primitive);
 }
 
 // The point is put back on the sphere along its radius, so that the distance travelled does not count in its error.
@@ -64,7 +62,7 @@ surface sphere_surface(ray r, hit h) {
     uint number = h.primitive & ~SELF_SPHERE;
     uvec4 w0 = sphere_word(SPHERE_WORDS * number);
     uvec4 w1 = sphere_word(SPHERE_WORDS * number + 1u);
-    real3 center = real3(uintBitsToFloat(w0.xyz));
+    real3 center = sphere_center(w0, w1, r.time);
     real radius = real(uintBitsToFloat(w0.w));
     real3 n = normalize_tier((r.o - center) + h.t * r.d);
     precise real3 p = center + radius * n;
@@ -77,7 +75,7 @@ surface surface_at(ray r, hit h) {
     bool on_sphere = HAS_SPHERES && (!HAS_TRIANGLES || (h.primitive & SELF_SPHERE) != 0u);
     surface s;
     if (on_sphere) s = sphere_surface(r, h);
-    else s = triangle_surface(h);
+    else s = triangle_surface(h, r.time);
     if (dot(s.ng, r.d) > 0.0) s.ng = -s.ng;
     if (dot(s.n, s.ng) < 0.0) s.n = -s.n;
     return s;

@@ -54,12 +54,14 @@ bool refine(ray r, inout hit h) {
     dvec3 tuv, o = dvec3(r.o), d = dvec3(r.d);
     bool on_sphere = HAS_SPHERES && (!HAS_TRIANGLES || (h.primitive & SELF_SPHERE) != 0u), fine;
     if (on_sphere) {
-        vec4 sphere = uintBitsToFloat(sphere_word(SPHERE_WORDS * (h.primitive & ~SELF_SPHERE)));
-        fine = refine_sphere(o, d, sphere.xyz, sphere.w, h.t * dot(r.d, r.d) > dot(real3(sphere.xyz) - r.o, r.d), tuv);
+        uint at = SPHERE_WORDS * (h.primitive & ~SELF_SPHERE);
+        uvec4 w0 = sphere_word(at), w1 = sphere_word(at + 1u);
+        real3 center = sphere_center(w0, w1, r.time);
+        fine = refine_sphere(o, d, vec3(center), uintBitsToFloat(w0.w), h.t * dot(r.d, r.d) > dot(center - r.o, r.d), tuv);
     } else {
-        uint at = TRIANGLE_WORDS * h.primitive;
-        vec3 v0 = uintBitsToFloat(triangle_word(at).xyz), v1 = uintBitsToFloat(triangle_word(at + 1u).xyz);
-        fine = refine_triangle(o, d, v0, v1, uintBitsToFloat(triangle_word(at + 2u).xyz), double(h.t), tuv);
+        real3 v0, v1, v2;
+        triangle_vertices(h, r.time, v0, v1, v2);
+        fine = refine_triangle(o, d, vec3(v0), vec3(v1), vec3(v2), double(h.t), tuv);
     }
     h.t = real(tuv.x);
     h.u = real(tuv.y);

@@ -7,9 +7,11 @@
 layout(set = 0, binding = BINDING_NODES) uniform usamplerBuffer node_words;
 layout(set = 0, binding = BINDING_TRIANGLES) uniform usamplerBuffer triangle_words;
 layout(set = 0, binding = BINDING_SPHERES) uniform usamplerBuffer sphere_words;
+layout(set = 0, binding = BINDING_INSTANCES) uniform usamplerBuffer instance_words;
 
 uvec4 node_word(uint word) { return texelFetch(node_words, int(word)); }
 uvec4 triangle_word(uint word) { return texelFetch(triangle_words, int(word)); }
 uvec4 sphere_word(uint word) { return texelFetch(sphere_words, int(word)); }
+uvec4 instance_word(uint word) { return texelFetch(instance_words, int(word)); }
 
 #endif

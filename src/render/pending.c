@@ -26,6 +26,7 @@ void pending_finish(struct pending *pending, struct device *device) {
     free(pending->slot_of);
     free(pending->primitive_at[0]);
     free(pending->primitive_at[1]);
+    free(pending->place_of);
     *pending = (struct pending){0};
 }
 
@@ -42,6 +43,12 @@ static struct word4 *record(const struct pending *pending, uint32_t number) {
     return (struct word4 *)pending->buffer.map + HEADER_WORDS + (size_t)number * PENDING_WORDS;
 }
 
+// Triangles of all parts.
+static uint32_t part_triangles(const struct scene *scene) {
+    const struct scene_part *last = scene->part_count ? &scene->parts[scene->part_count - 1] : NULL;
+    return last ? last->first + last->mesh->triangle_count : 0;
+}
+
 // Leaf order to primitives and back; made once, when the first question comes.
 static bool make_maps(struct pending *p, struct context *ctx, const struct scene *scene, const struct bvh *bvh) {
     uint32_t triangles = scene_triangle_count(scene), spheres = scene_sphere_count(scene), next[2] = {0, 0};
@@ -51,10 +58,33 @@ static bool make_maps(struct pending *p, struct context *ctx, const struct scene
     if (!p->slot_of || !p->primitive_at[0] || !p->primitive_at[1]) return false;
     for (uint32_t i = 0; i < bvh->primitive_count; i++) {
         uint32_t primitive = bvh->order[i], kind = primitive >= triangles;
+        if (primitive >= triangles + spheres) continue;
         p->slot_of[primitive] = next[kind];
         p->primitive_at[kind][next[kind]++] = primitive;
     }
-    return true;
+    p->place_of = array_alloc(ctx, part_triangles(scene), sizeof *p->place_of, "primitive numbers");
+    for (uint32_t i = 0; p->place_of && i < scene->part_count; i++)
+        for (uint32_t k = 0; k < bvh->parts[i].primitive_count; k++) p->place_of[scene->parts[i].first + bvh->parts[i].order[k]] = k;
+    return p->place_of != NULL;
+}
+
+// On the device an instance's triangles are numbered in leaf order, in the BVH as the mesh has them; one set of numbers begins behind the triangles in
+// leaf order, the other behind the spheres.
+static uint32_t number_of(const struct pending *p, const struct pending_work *work, uint32_t self) {
+    const struct scene *scene = work->scene;
+    const uint32_t triangles = scene_triangle_count(scene), slots = triangles + part_triangles(scene);
+    if (self & SELF_SPHERE || self < slots) return p->primitive_at[self >> 31][self & ~SELF_SPHERE];
+    const struct scene_instance *instance = scene_instance_at(scene, self - slots);
+    const uint32_t place = self - slots - instance->first;
+    return triangles + scene_sphere_count(scene) + instance->first + work->bvh->parts[instance->part].order[place];
+}
+
+static uint32_t self_of(const struct pending *p, const struct scene *scene, uint32_t number) {
+    const uint32_t triangles = scene_triangle_count(scene), others = triangles + scene_sphere_count(scene);
+    if (number < others) return p->slot_of[number] | (number >= triangles ? SELF_SPHERE : 0);
+    const struct scene_instance *instance = scene_instance_at(scene, number - others);
+    const uint32_t triangle = number - others - instance->first;
+    return triangles + part_triangles(scene) + instance->first + p->place_of[scene->parts[instance->part].first + triangle];
 }
 
 static bool make_ready(struct pending *p, const struct pending_work *work) {
@@ -84,7 +114,8 @@ static uint32_t bits_of(float value) {
 }
 
 // A record's question, in scene coordinates. The origin's sum is exact but for components a billion times smaller than the base, which fp64 rounds.
-static struct resolve_ray question(const struct pending *p, const struct word4 *r, const struct device_scene *ds) {
+static struct resolve_ray question(const struct pending *p, const struct word4 *r, const struct pending_work *work) {
+    const struct device_scene *ds = work->ds;
     struct resolve_ray ray = {.tmin = 0, .tmax = (double)float_of(r[2].w[3]) / ds->scale, .any = r[3].w[0] & 1, .self = RESOLVE_NO_SELF};
     for (int i = 0; i < 3; i++) {
         ray.o[i] = (double)float_of(r[1].w[i]) / ds->scale + ds->base[i];
@@ -94,19 +125,19 @@ static struct resolve_ray question(const struct pending *p, const struct word4 *
     int32_t object = (int32_t)r[3].w[1];
     if (object >= 0) ray.target = (struct ref_target){.there = true, .object = (uint32_t)object, .index = (int32_t)r[3].w[2]};
     uint32_t self = r[1].w[3];
-    if (self != SELF_NONE) ray.self = p->primitive_at[self >> 31][self & ~SELF_SPHERE];
+    if (self != SELF_NONE) ray.self = number_of(p, work, self);
     return ray;
 }
 
 // Appends an answer to a record, in device units.
-static void store_answer(const struct pending *p, struct word4 *r, const struct resolve_answer *answer, float scale, uint32_t triangles) {
+static void store_answer(const struct pending *p, struct word4 *r, const struct resolve_answer *answer, const struct pending_work *work) {
     uint32_t at = 4 + 2 * r[0].w[2]++;
     const struct gn_hit *hit = &answer->hit;
     bool closest = !(r[3].w[0] & 1) && hit->object >= 0;
-    uint32_t primitive = closest ? p->slot_of[answer->number] | (answer->number >= triangles ? SELF_SPHERE : 0) : SELF_NONE;
+    uint32_t primitive = closest ? self_of(p, work->scene, answer->number) : SELF_NONE;
     r[at] = (struct word4){{r[3].w[0] >> 1, (uint32_t)hit->object, (uint32_t)hit->primitive, primitive}};
     r[0].w[3] = PENDING_ANSWERED;
-    r[at + 1] = (struct word4){{bits_of(hit->t * scale), bits_of(hit->u), bits_of(hit->v), 0}};
+    r[at + 1] = (struct word4){{bits_of(hit->t * work->ds->scale), bits_of(hit->u), bits_of(hit->v), 0}};
 }
 
 // Decides the ray of every record that still asks.
@@ -121,12 +152,12 @@ static bool answer_all(struct pending *p, const struct pending_work *work, uint3
         if (r[0].w[3] != PENDING_ASKS) continue;
         if (r[0].w[2] == PENDING_ANSWERS)
             ok = fail(work->ctx, GN_LIMIT, "more than %d rays of one sample are undecided, the most that the exact tier keeps", PENDING_ANSWERS);
-        rays[count++] = question(p, r, work->ds);
+        rays[count++] = question(p, r, work);
     }
     struct ref_world world = ref_world_make(work->scene, work->bvh, work->specialization->effects);
     ok = ok && resolve_rays(answers, work->ctx, &world, rays, count);
     for (uint32_t i = 0, k = 0; ok && i < records; i++)
-        if (record(p, i)[0].w[3] == PENDING_ASKS) store_answer(p, record(p, i), &answers[k++], work->ds->scale, world.triangle_count);
+        if (record(p, i)[0].w[3] == PENDING_ASKS) store_answer(p, record(p, i), &answers[k++], work);
     free(rays);
     free(answers);
     return ok;

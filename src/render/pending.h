@@ -12,6 +12,7 @@ struct pending {
     struct kernel again;            // the second stage, on devices with doubles; made with it
     uint32_t *slot_of;              // by primitive of the BVH: its number in leaf order, of its kind
     uint32_t *primitive_at[2];      // by number in leaf order, triangles and spheres: the primitive of the BVH
+    uint32_t *place_of;             // by triangle of all parts: its place in the order of its part's BVH
 };
 
 // What the samples are part of; borrowed.

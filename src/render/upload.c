@@ -6,21 +6,40 @@
 
 #include "base/threads.h"
 #include "render/base.h"
+#include "render/upload_instances.h"
 #include "render/upload_lights.h"
 #include "scene/area_lights.h"
 #include "scene/fog.h"
 
-// What the fill functions need. `inner` numbers the inner nodes, `slot` the primitives of each kind in leaf order.
+// A hierarchy: the scene's, or that of a part.
+struct tree {
+    const struct bvh *bvh;
+    struct part_frame frame; // what its boxes are measured in
+    uint32_t *inner;         // by node: inner nodes before it
+    uint32_t inner_count;
+    uint32_t first_node;     // inner nodes of the trees before
+    uint32_t first_slot;     // of a part's triangles
+};
+
+// Of the scene's hierarchy, by position in the order.
+enum kind { KIND_TRIANGLE, KIND_SPHERE, KIND_INSTANCE };
+
+// What the fill functions need. A primitive's slot is its number in leaf order among its kind; the triangles of parts have those behind.
 struct upload {
     const struct scene *scene;
     const struct bvh *bvh;
     uint32_t effects;
     uint32_t triangle_count, sphere_count;
-    float base[3], scale;   // as in device_scene
-    uint32_t *inner;        // by node: inner nodes before it
-    uint32_t *slot;         // by position in bvh->order: primitives of the same kind before it; NULL where there is only one kind
-    uint32_t inner_count;
-    struct light_table lights; // only where there is shading
+    uint32_t triangle_slots;     // triangle_count and those of parts
+    float base[3], scale;        // as in device_scene
+    struct tree *trees;          // the scene's, then those of the parts, where there are instances
+    uint32_t tree_count;
+    uint32_t *slot;              // by position in bvh->order; NULL where there is only one kind
+    uint32_t *primitive_at[2];   // by slot, triangles and spheres: the primitive of the BVH; the same
+    uint32_t *record_of;         // by shape: word of its record in INSTANCES; NULL where nothing asks for any
+    uint32_t record_count;
+    uint32_t *first_attribute;   // by mesh: triangles with attributes in the meshes before; only where there is shading
+    struct light_table lights;   // the same
 };
 
 static uint32_t float_bits(float value) {
@@ -38,10 +57,11 @@ static struct word4 point_of(const struct upload *u, const float v[3], uint32_t 
     return word4_of(p, last);
 }
 
-// A corner of a box, moved outward (`side` -1 for the lower one, +1) by what denormal coordinates may lose on the way; for others that is nothing.
-static struct word4 corner_of(const struct upload *u, const float v[3], double side, uint32_t last) {
+// A corner of a box, moved outward (`side` -1 for the lower one, +1) by what denormal coordinates may lose on the way; for others that is nothing. In a part's
+// frame it is rounded, which is part of its instances' slack.
+static struct word4 corner_of(const struct part_frame *frame, const float v[3], double side, uint32_t last) {
     float p[3];
-    for (int i = 0; i < 3; i++) p[i] = (float)(((double)v[i] - u->base[i]) * u->scale + side * 0x1p-120);
+    for (int i = 0; i < 3; i++) p[i] = (float)(((double)v[i] - frame->center[i]) * frame->scale + side * 0x1p-120);
     return word4_of(p, last);
 }
 
@@ -59,7 +79,75 @@ static float find_scale(const struct scene *scene, const float base[3]) {
     return ldexpf(1.0f, exponent < -126 ? -126 : exponent > 126 ? 126 : exponent);
 }
 
-static bool is_sphere(const struct upload *u, uint32_t primitive) { return primitive >= u->triangle_count; }
+static enum kind kind_of(const struct upload *u, uint32_t primitive) {
+    if (primitive < u->triangle_count) return KIND_TRIANGLE;
+    return primitive - u->triangle_count < u->sphere_count ? KIND_SPHERE : KIND_INSTANCE;
+}
+
+static bool has_kind(const struct upload *u, enum kind kind) {
+    static const uint32_t needed[] = {
+        [KIND_TRIANGLE] = EFFECT_TRIANGLES, [KIND_SPHERE] = EFFECT_SPHERES, [KIND_INSTANCE] = EFFECT_TRIANGLES | EFFECT_INSTANCES};
+    return (u->effects & needed[kind]) == needed[kind];
+}
+
+static bool tree_init(struct tree *tree, struct context *ctx, const struct bvh *bvh) {
+    tree->bvh = bvh;
+    tree->inner = array_alloc(ctx, bvh->node_count, sizeof *tree->inner, "node numbers");
+    for (uint32_t i = 0; tree->inner && i < bvh->node_count; i++) {
+        tree->inner[i] = tree->inner_count;
+        if (bvh->nodes[i].count == 0) tree->inner_count++;
+    }
+    return tree->inner != NULL;
+}
+
+static bool make_trees(struct upload *u, struct context *ctx) {
+    const uint32_t parts = has_kind(u, KIND_INSTANCE) ? u->scene->part_count : 0;
+    u->trees = array_alloc(ctx, parts + 1u, sizeof *u->trees, "hierarchies");
+    if (!u->trees) return false;
+    u->tree_count = parts + 1;
+    u->triangle_slots = u->triangle_count;
+    for (uint32_t i = 0; i <= parts; i++) {
+        struct tree *tree = &u->trees[i];
+        tree->first_node = i ? tree[-1].first_node + tree[-1].inner_count : 0;
+        tree->first_slot = i ? u->triangle_slots : 0;
+        tree->frame = i ? part_frame_of(&u->scene->parts[i - 1]) : (struct part_frame){{u->base[0], u->base[1], u->base[2]}, u->scale};
+        if (!tree_init(tree, ctx, i ? &u->bvh->parts[i - 1] : u->bvh)) return false;
+        if (i) u->triangle_slots += tree->bvh->primitive_count;
+    }
+    return true;
+}
+
+static bool make_slots(struct upload *u, struct context *ctx) {
+    if ((u->triangle_count > 0) + (u->sphere_count > 0) + (u->scene->instance_count > 0) <= 1) return true;
+    u->slot = array_alloc(ctx, u->bvh->primitive_count, sizeof *u->slot, "primitive numbers");
+    u->primitive_at[KIND_TRIANGLE] = array_alloc(ctx, u->triangle_count, sizeof *u->slot, "primitive numbers");
+    u->primitive_at[KIND_SPHERE] = array_alloc(ctx, u->sphere_count, sizeof *u->slot, "primitive numbers");
+    if (!u->slot || !u->primitive_at[KIND_TRIANGLE] || !u->primitive_at[KIND_SPHERE]) return false;
+    uint32_t next[3] = {0, 0, 0};
+    for (uint32_t i = 0; i < u->bvh->primitive_count; i++) {
+        const enum kind kind = kind_of(u, u->bvh->order[i]);
+        if (kind != KIND_INSTANCE) u->primitive_at[kind][next[kind]] = u->bvh->order[i];
+        u->slot[i] = next[kind]++;
+    }
+    return true;
+}
+
+static bool has_record(const struct upload *u, const struct scene_shape *shape) {
+    if (shape->instance) return has_kind(u, KIND_INSTANCE);
+    return shape->type == SHAPE_SPHERE && shape->moves && u->effects & EFFECT_MOTION_BLUR;
+}
+
+// Gives records their places, behind the words of the objects.
+static bool make_records(struct upload *u, struct context *ctx) {
+    const uint32_t shapes = u->scene->shape_count, first = (shapes + 3) / 4;
+    if (!(u->effects & (EFFECT_INSTANCES | EFFECT_MOTION_BLUR))) return true;
+    u->record_of = array_alloc(ctx, shapes, sizeof *u->record_of, "instances");
+    if (!u->record_of) return false;
+    for (uint32_t i = 0; i < shapes; i++)
+        if (has_record(u, &u->scene->shapes[i])) u->record_of[i] = first + INSTANCE_WORDS * u->record_count++;
+    return (uint64_t)first + (uint64_t)INSTANCE_WORDS * u->record_count <= REF_FIRST_MASK ||
+           fail(ctx, GN_LIMIT, "%u instances are more than a hierarchy on a device can refer to (%u)", u->record_count, (REF_FIRST_MASK - first) / INSTANCE_WORDS);
+}
 
 static bool upload_init(struct upload *u, struct context *ctx, const struct scene *scene, const struct bvh *bvh, uint32_t effects, const float *eye) {
     *u = (struct upload){.scene = scene, .bvh = bvh, .effects = effects};
@@ -67,84 +155,95 @@ static bool upload_init(struct upload *u, struct context *ctx, const struct scen
     u->scale = find_scale(scene, u->base);
     u->triangle_count = scene_triangle_count(scene);
     u->sphere_count = scene_sphere_count(scene);
-    u->inner = array_alloc(ctx, bvh->node_count, sizeof *u->inner, "node numbers");
-    if (!u->inner) return false;
-    for (uint32_t i = 0; i < bvh->node_count; i++) {
-        u->inner[i] = u->inner_count;
-        if (bvh->nodes[i].count == 0) u->inner_count++;
-    }
-    if (u->triangle_count == 0 || u->sphere_count == 0) return true;
-    u->slot = array_alloc(ctx, bvh->primitive_count, sizeof *u->slot, "primitive numbers");
-    if (!u->slot) return false;
-    uint32_t next[2] = {0, 0};
-    for (uint32_t i = 0; i < bvh->primitive_count; i++) u->slot[i] = next[is_sphere(u, bvh->order[i])]++;
-    return true;
+    return make_trees(u, ctx) && make_slots(u, ctx) && make_records(u, ctx);
 }
 
 static void upload_finish(struct upload *u) {
     light_table_finish(&u->lights);
-    free(u->inner);
+    for (uint32_t i = 0; i < u->tree_count; i++) free(u->trees[i].inner);
+    free(u->trees);
     free(u->slot);
+    free(u->primitive_at[KIND_TRIANGLE]);
+    free(u->primitive_at[KIND_SPHERE]);
+    free(u->record_of);
+    free(u->first_attribute);
 }
 
 // --------------------------------------------------------------------------------------------------------------- nodes
 
-// A leaf whose kind is disabled becomes a leaf of the other kind that holds the null primitive behind the last one.
-static uint32_t leaf_reference(const struct upload *u, const struct bvh_node *node) {
-    bool sphere = is_sphere(u, u->bvh->order[node->first]);
-    uint32_t first = u->slot ? u->slot[node->first] : node->first, count = node->count;
-    if (!(u->effects & (sphere ? EFFECT_SPHERES : EFFECT_TRIANGLES))) {
-        sphere = !sphere;
-        first = sphere ? u->sphere_count : u->triangle_count;
-        count = 1;
-    }
-    return REF_LEAF | (sphere ? REF_SPHERES : 0u) | (count - 1) << REF_COUNT_SHIFT | first;
+// In place of a leaf whose kind is disabled: the null primitive, behind the last one, of a kind that is not.
+static uint32_t null_reference(const struct upload *u) {
+    const bool sphere = !has_kind(u, KIND_TRIANGLE);
+    return REF_LEAF | (sphere ? REF_SPHERES | u->sphere_count : u->triangle_slots);
 }
 
-static uint32_t node_reference(const struct upload *u, uint32_t number) {
-    const struct bvh_node *node = &u->bvh->nodes[number];
-    return node->count ? leaf_reference(u, node) : u->inner[number];
+static uint32_t leaf_reference(const struct upload *u, const struct tree *tree, const struct bvh_node *node) {
+    const uint32_t count = (node->count - 1) << REF_COUNT_SHIFT, primitive = tree->bvh->order[node->first];
+    if (tree != u->trees) return REF_LEAF | count | (tree->first_slot + node->first);
+    const enum kind kind = kind_of(u, primitive);
+    if (!has_kind(u, kind)) return null_reference(u);
+    if (kind == KIND_INSTANCE)
+        return REF_LEAF | REF_INSTANCE | u->record_of[u->scene->instances[primitive - u->triangle_count - u->sphere_count].shape];
+    return REF_LEAF | (kind == KIND_SPHERE ? REF_SPHERES : 0u) | count | (u->slot ? u->slot[node->first] : node->first);
+}
+
+static uint32_t node_reference(const struct upload *u, const struct tree *tree, uint32_t number) {
+    const struct bvh_node *node = &tree->bvh->nodes[number];
+    return node->count ? leaf_reference(u, tree, node) : tree->first_node + tree->inner[number];
 }
 
 static uint32_t root_reference(const struct upload *u) {
     if (u->bvh->node_count == 0 || !(u->effects & (EFFECT_TRIANGLES | EFFECT_SPHERES))) return REF_NONE;
-    if (u->effects & EFFECT_BVH) return node_reference(u, 0);
+    if (u->effects & EFFECT_BVH) return node_reference(u, u->trees, 0);
     // Without a hierarchy (the plan prunes it for a few primitives of one kind): one leaf of all.
     const struct bvh_node all = {.first = 0, .count = u->bvh->primitive_count};
-    return leaf_reference(u, &all);
+    return leaf_reference(u, u->trees, &all);
 }
 
-static void write_node(const struct upload *u, uint32_t number, struct word4 *to) {
-    uint32_t first = u->bvh->nodes[number].first;
-    const struct bvh_node *left = &u->bvh->nodes[first], *right = left + 1;
-    to[0] = corner_of(u, left->min, -1, node_reference(u, first));
-    to[1] = corner_of(u, left->max, +1, node_reference(u, first + 1));
-    to[2] = corner_of(u, right->min, -1, 0);
-    to[3] = corner_of(u, right->max, +1, 0);
+static void write_node(const struct upload *u, const struct tree *tree, uint32_t number, struct word4 *to) {
+    uint32_t first = tree->bvh->nodes[number].first;
+    const struct bvh_node *left = &tree->bvh->nodes[first], *right = left + 1;
+    to[0] = corner_of(&tree->frame, left->min, -1, node_reference(u, tree, first));
+    to[1] = corner_of(&tree->frame, left->max, +1, node_reference(u, tree, first + 1));
+    to[2] = corner_of(&tree->frame, right->min, -1, 0);
+    to[3] = corner_of(&tree->frame, right->max, +1, 0);
 }
 
 // The last node before which there are `inner` inner nodes and which is one itself.
-static uint32_t find_inner(const struct upload *u, uint32_t inner) {
-    uint32_t low = 0, high = u->bvh->node_count - 1;
+static uint32_t find_inner(const struct tree *tree, uint32_t inner) {
+    uint32_t low = 0, high = tree->bvh->node_count - 1;
     while (low < high) {
         uint32_t middle = low + (high - low + 1) / 2;
-        if (u->inner[middle] <= inner) low = middle;
+        if (tree->inner[middle] <= inner) low = middle;
         else high = middle - 1;
     }
     return low;
 }
 
+// The tree that has inner node `node` of all: the last that begins at or before it.
+static const struct tree *find_tree(const struct upload *u, uint64_t node) {
+    uint32_t low = 0, high = u->tree_count;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (u->trees[middle].first_node <= node) low = middle;
+        else high = middle;
+    }
+    return &u->trees[low];
+}
+
 static bool fill_nodes(void *data, void *to, uint64_t offset, uint64_t size) {
     const struct upload *u = data;
     struct word4 *word = to;
-    uint64_t left = size / (NODE_WORDS * sizeof *word);
-    if (left == 0 || u->inner_count == 0) return true;
-    uint32_t number = find_inner(u, (uint32_t)(offset / (NODE_WORDS * sizeof *word)));
-    for (; left; number++) {
-        if (u->bvh->nodes[number].count) continue;
-        write_node(u, number, word);
-        word += NODE_WORDS;
-        left--;
+    const uint64_t begin = offset / (NODE_WORDS * sizeof *word), end = begin + size / (NODE_WORDS * sizeof *word);
+    const struct tree *tree = find_tree(u, begin);
+    for (uint64_t at = begin; at < end; tree++) {
+        uint32_t number = tree->inner_count ? find_inner(tree, (uint32_t)(at - tree->first_node)) : 0;
+        for (; at < end && at - tree->first_node < tree->inner_count; number++) {
+            if (tree->bvh->nodes[number].count) continue;
+            write_node(u, tree, number, word);
+            word += NODE_WORDS;
+            at++;
+        }
     }
     return true;
 }
@@ -158,25 +257,26 @@ static void write_triangle(const struct upload *u, uint32_t number, struct word4
     to[2] = point_of(u, t.v[2], t.material);
 }
 
+// A triangle of a part: its vertices as the mesh has them. Where the mesh has no materials the instances' shapes, or the one that moves, have one.
+static void write_part_triangle(const struct upload *u, uint32_t slot, struct word4 *to) {
+    uint32_t low = 1, high = u->tree_count;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (u->trees[middle].first_slot <= slot) low = middle;
+        else high = middle;
+    }
+    const struct tree *tree = &u->trees[low];
+    const struct scene_mesh *mesh = u->scene->parts[low - 1].mesh;
+    const uint32_t primitive = tree->bvh->order[slot - tree->first_slot], *index = mesh->indices + 3 * (size_t)primitive;
+    const uint32_t last[3] = {0, primitive, mesh->materials ? mesh->materials[primitive] : 0};
+    for (int i = 0; i < 3; i++) to[i] = word4_of(mesh->positions + 3 * (size_t)index[i], last[i]);
+}
+
 static void write_sphere(const struct upload *u, uint32_t number, struct word4 *to) {
     uint32_t object = scene_sphere_object(u->scene, number);
     const struct scene_shape *shape = &u->scene->shapes[object];
     to[0] = point_of(u, shape->center, float_bits(shape->radius * u->scale));
-    to[1] = (struct word4){{object, shape->material, 0, 0}};
-}
-
-// The position in bvh->order of the primitive of kind `spheres` with this slot.
-static uint32_t find_slot(const struct upload *u, uint32_t slot, bool spheres) {
-    if (!u->slot) return slot;
-    uint32_t low = 0, high = u->bvh->primitive_count - 1;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        bool own = is_sphere(u, u->bvh->order[middle]) == spheres;
-        uint32_t before = own ? u->slot[middle] : middle - u->slot[middle]; // primitives of the kind before `middle`
-        if (before + (own ? 1 : 0) > slot) high = middle;
-        else low = middle + 1;
-    }
-    return low;
+    to[1] = (struct word4){{object, shape->material, u->record_of ? u->record_of[object] : 0, 0}};
 }
 
 // Slots [begin, end) of one kind; the slot behind the last primitive is the null primitive, which nothing hits.
@@ -187,23 +287,28 @@ struct slots {
     bool spheres;
 };
 
+static void write_slot(const struct slots *s, uint32_t slot, struct word4 *to) {
+    const struct upload *u = s->u;
+    if (!s->spheres && slot >= u->triangle_count) {
+        write_part_triangle(u, slot, to);
+        return;
+    }
+    const uint32_t *primitive_at = u->primitive_at[s->spheres ? KIND_SPHERE : KIND_TRIANGLE], primitive = (primitive_at ? primitive_at : u->bvh->order)[slot];
+    if (s->spheres) write_sphere(u, primitive - u->triangle_count, to);
+    else write_triangle(u, primitive, to);
+}
+
 static bool write_slots(void *data, size_t begin, size_t end, unsigned thread) {
     (void)thread;
     const struct slots *s = data;
-    const struct upload *u = s->u;
-    uint32_t words = s->spheres ? SPHERE_WORDS : TRIANGLE_WORDS;
-    uint32_t count = s->spheres ? u->sphere_count : u->triangle_count;
-    uint32_t position = s->first + begin < count ? find_slot(u, (uint32_t)(s->first + begin), s->spheres) : 0;
+    const uint32_t words = s->spheres ? SPHERE_WORDS : TRIANGLE_WORDS, count = s->spheres ? s->u->sphere_count : s->u->triangle_slots;
     for (size_t i = begin; i < end; i++) {
         struct word4 *to = s->to + words * i;
-        if (s->first + i >= count) { // NaN hits nothing
-            for (uint32_t w = 0; w < words; w++) to[w] = (struct word4){{0x7fc00000u, 0x7fc00000u, 0x7fc00000u, 0}};
+        if (s->first + i < count) {
+            write_slot(s, (uint32_t)(s->first + i), to);
             continue;
         }
-        while (is_sphere(u, u->bvh->order[position]) != s->spheres) position++;
-        uint32_t primitive = u->bvh->order[position++];
-        if (s->spheres) write_sphere(u, primitive - u->triangle_count, to);
-        else write_triangle(u, primitive, to);
+        for (uint32_t w = 0; w < words; w++) to[w] = (struct word4){{0x7fc00000u, 0x7fc00000u, 0x7fc00000u, 0}}; // NaN hits nothing
     }
     return true;
 }
@@ -217,13 +322,56 @@ static bool fill_slots(const struct upload *u, void *to, uint64_t offset, uint64
 static bool fill_triangles(void *data, void *to, uint64_t offset, uint64_t size) { return fill_slots(data, to, offset, size, false); }
 static bool fill_spheres(void *data, void *to, uint64_t offset, uint64_t size) { return fill_slots(data, to, offset, size, true); }
 
+// ----------------------------------------------------------------------------------------------------------- instances
+
+static uint64_t instance_words(const struct upload *u) {
+    return u->record_of ? ((uint64_t)u->scene->shape_count + 3) / 4 + (uint64_t)INSTANCE_WORDS * (u->record_count ? u->record_count : 1) : 0;
+}
+
+static void write_record(const struct upload *u, uint32_t object, struct word4 *to) {
+    const struct scene_shape *shape = &u->scene->shapes[object];
+    if (!shape->instance) {
+        write_moving_sphere(to, shape, u->base, u->scale);
+        return;
+    }
+    const struct scene_instance *instance = &u->scene->instances[shape->instance - 1];
+    const struct tree *tree = &u->trees[instance->part + 1];
+    write_instance(to, u->scene, instance, u->base, u->scale, node_reference(u, tree, 0), u->triangle_slots + instance->first - tree->first_slot);
+}
+
+// Asked for in any pieces of whole words, as the records begin behind a varying number of them.
+static bool fill_instances(void *data, void *to, uint64_t offset, uint64_t size) {
+    const struct upload *u = data;
+    const uint32_t shapes = u->scene->shape_count;
+    const uint64_t begin = offset / sizeof(struct word4), end = begin + size / sizeof(struct word4), heads = ((uint64_t)shapes + 3) / 4;
+    struct word4 *word = to, record[INSTANCE_WORDS];
+    memset(to, 0, size);
+    for (uint64_t i = begin; i < end && i < heads; i++)
+        for (uint32_t k = 0; k < 4 && 4 * i + k < shapes; k++) word[i - begin].w[k] = u->record_of[4 * i + k];
+    for (uint32_t object = 0; object < shapes; object++) {
+        const uint64_t at = u->record_of[object];
+        if (at == 0 || at >= end || at + INSTANCE_WORDS <= begin) continue;
+        write_record(u, object, record);
+        for (uint64_t k = 0; k < INSTANCE_WORDS; k++)
+            if (at + k >= begin && at + k < end) word[at + k - begin] = record[k];
+    }
+    return true;
+}
+
 // ------------------------------------------------------------------------------------------------------------- shading
 
 #define EFFECTS_WITH_UVS (EFFECT_TEXTURES | EFFECT_NORMAL_MAPS | EFFECT_ALPHA)
 
 // Whether kernels look at a mesh's vertices once more after the hit.
-static bool has_attributes(const struct upload *u, const struct scene_shape *shape) {
-    return (shape->mesh.normals && u->effects & EFFECT_SMOOTH_NORMALS) || (shape->mesh.uvs && u->effects & EFFECTS_WITH_UVS);
+static bool has_attributes(const struct upload *u, const struct scene_mesh *mesh) {
+    return (mesh->normals && u->effects & EFFECT_SMOOTH_NORMALS) || (mesh->uvs && u->effects & EFFECTS_WITH_UVS);
+}
+
+// The meshes with arrays of attributes, one after the other: those of the shapes, then the prototypes.
+static uint32_t mesh_count(const struct upload *u) { return u->scene->shape_count + u->scene->prototype_count; }
+static const struct scene_mesh *mesh_at(const struct upload *u, uint32_t number) {
+    const uint32_t shapes = u->scene->shape_count;
+    return number < shapes ? &u->scene->shapes[number].mesh : &u->scene->prototypes[number - shapes];
 }
 
 // Words [first, first + count) of an array that is the meshes' parts one after another.
@@ -242,9 +390,9 @@ static bool fill_indices(void *data, void *to, uint64_t offset, uint64_t size) {
     struct part want = {offset / sizeof(struct word4), size / sizeof(struct word4)}, have;
     uint64_t triangles = 0;
     uint32_t vertices = 0;
-    for (uint32_t i = 0; i < u->scene->shape_count; i++) {
-        const struct scene_mesh *mesh = &u->scene->shapes[i].mesh;
-        if (!has_attributes(u, &u->scene->shapes[i])) continue;
+    for (uint32_t i = 0; i < mesh_count(u); i++) {
+        const struct scene_mesh *mesh = mesh_at(u, i);
+        if (!has_attributes(u, mesh)) continue;
         if (overlap(want, triangles, mesh->triangle_count, &have)) {
             struct word4 *word = (struct word4 *)to + (have.first - want.first);
             const uint32_t *index = mesh->indices + 3 * (have.first - triangles);
@@ -261,9 +409,9 @@ static bool fill_indices(void *data, void *to, uint64_t offset, uint64_t size) {
 static bool fill_attribute(const struct upload *u, void *to, uint64_t offset, uint64_t size, uint32_t width, const float *(*of)(const struct scene_mesh *)) {
     struct part want = {offset / sizeof(struct word4), size / sizeof(struct word4)}, have;
     uint64_t vertices = 0;
-    for (uint32_t i = 0; i < u->scene->shape_count; i++) {
-        const struct scene_mesh *mesh = &u->scene->shapes[i].mesh;
-        if (!has_attributes(u, &u->scene->shapes[i])) continue;
+    for (uint32_t i = 0; i < mesh_count(u); i++) {
+        const struct scene_mesh *mesh = mesh_at(u, i);
+        if (!has_attributes(u, mesh)) continue;
         if (overlap(want, vertices, mesh->vertex_count, &have)) {
             struct word4 *word = (struct word4 *)to + (have.first - want.first);
             const float *from = of(mesh);
@@ -291,11 +439,11 @@ static uint32_t light_of(const struct upload *u, uint32_t object) {
 static bool fill_objects(void *data, void *to, uint64_t offset, uint64_t size) {
     const struct upload *u = data;
     uint64_t begin = offset / sizeof(struct word4), end = begin + size / sizeof(struct word4);
-    uint32_t triangles = 0;
-    for (uint32_t i = 0; i < u->scene->shape_count && i < end; i++) {
-        bool attributes = has_attributes(u, &u->scene->shapes[i]);
-        if (i >= begin) ((struct word4 *)to)[i - begin] = (struct word4){{attributes ? triangles : NO_ATTRIBUTES, light_of(u, i), 0, 0}};
-        if (attributes) triangles += u->scene->shapes[i].mesh.triangle_count;
+    for (uint64_t i = begin; i < end; i++) {
+        const struct scene_shape *shape = &u->scene->shapes[i];
+        const uint32_t mesh = shape->type == SHAPE_INSTANCE ? u->scene->shape_count + shape->prototype : (uint32_t)i;
+        const uint32_t first = has_attributes(u, mesh_at(u, mesh)) ? u->first_attribute[mesh] : NO_ATTRIBUTES;
+        ((struct word4 *)to)[i - begin] = (struct word4){{first, light_of(u, (uint32_t)i), 0, 0}};
     }
     return true;
 }
@@ -376,21 +524,24 @@ static bool make(struct buffer *buffer, struct context *ctx, struct device *devi
     return count == 0 || buffer_fill(buffer, ctx, device, record, fill, u);
 }
 
-static void count_attributes(const struct upload *u, uint64_t *triangles, uint64_t *vertices) {
+static bool count_attributes(struct upload *u, struct context *ctx, uint64_t *triangles, uint64_t *vertices) {
     *triangles = *vertices = 0;
-    for (uint32_t i = 0; i < u->scene->shape_count; i++) {
-        if (!has_attributes(u, &u->scene->shapes[i])) continue;
-        *triangles += u->scene->shapes[i].mesh.triangle_count;
-        *vertices += u->scene->shapes[i].mesh.vertex_count;
+    u->first_attribute = array_alloc(ctx, mesh_count(u), sizeof *u->first_attribute, "vertex attributes");
+    if (!u->first_attribute) return false;
+    for (uint32_t i = 0; i < mesh_count(u); i++) {
+        u->first_attribute[i] = (uint32_t)*triangles;
+        if (!has_attributes(u, mesh_at(u, i))) continue;
+        *triangles += mesh_at(u, i)->triangle_count;
+        *vertices += mesh_at(u, i)->vertex_count;
     }
+    return true;
 }
 
 static bool make_shading(struct device_scene *out, struct context *ctx, struct device *device, struct upload *u) {
     uint64_t triangles, vertices;
     bool normals = u->effects & EFFECT_SMOOTH_NORMALS, uvs = u->effects & EFFECTS_WITH_UVS, objects = normals || uvs || u->effects & EFFECT_SOFT_SHADOWS;
-    count_attributes(u, &triangles, &vertices);
     out->light_count = light_count(u);
-    if (!light_table_init(&u->lights, ctx, u->scene, u->effects)) return false;
+    if (!count_attributes(u, ctx, &triangles, &vertices) || !light_table_init(&u->lights, ctx, u->scene, u->effects)) return false;
     const uint32_t emitters = u->lights.first[out->light_count];
     return make(&out->objects, ctx, device, u, "objects", objects ? u->scene->shape_count : 0, OBJECT_WORDS, fill_objects) &&
            make(&out->indices, ctx, device, u, "vertex indices", triangles, 1, fill_indices) &&
@@ -407,9 +558,11 @@ static bool make_geometry(struct device_scene *out, struct context *ctx, struct 
     memcpy(out->base, u->base, sizeof out->base);
     out->scale = u->scale;
     out->root = root_reference(u);
-    return make(&out->nodes, ctx, device, u, "bvh nodes", u->inner_count, NODE_WORDS, fill_nodes) &&
-           make(&out->triangles, ctx, device, u, "triangles", triangles ? u->triangle_count + 1ull : 0, TRIANGLE_WORDS, fill_triangles) &&
-           make(&out->spheres, ctx, device, u, "spheres", spheres ? u->sphere_count + 1ull : 0, SPHERE_WORDS, fill_spheres);
+    const struct tree *last = &u->trees[u->tree_count - 1];
+    return make(&out->nodes, ctx, device, u, "bvh nodes", last->first_node + last->inner_count, NODE_WORDS, fill_nodes) &&
+           make(&out->triangles, ctx, device, u, "triangles", triangles ? u->triangle_slots + 1ull : 0, TRIANGLE_WORDS, fill_triangles) &&
+           make(&out->spheres, ctx, device, u, "spheres", spheres ? u->sphere_count + 1ull : 0, SPHERE_WORDS, fill_spheres) &&
+           make(&out->instances, ctx, device, u, "instances", instance_words(u), 1, fill_instances);
 }
 
 bool device_scene_init(struct device_scene *out, struct context *ctx, struct device *device, const struct scene *scene,
@@ -425,7 +578,7 @@ bool device_scene_init(struct device_scene *out, struct context *ctx, struct dev
 
 void device_scene_finish(struct device_scene *ds, struct device *device) {
     struct buffer *buffers[] = {&ds->nodes, &ds->triangles, &ds->spheres, &ds->objects, &ds->materials,
-                                &ds->lights, &ds->indices, &ds->normals, &ds->uvs, &ds->globals, &ds->emitters};
+                                &ds->lights, &ds->indices, &ds->normals, &ds->uvs, &ds->globals, &ds->emitters, &ds->instances};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) buffer_finish(buffers[i], device);
     *ds = (struct device_scene){0};
 }
@@ -437,11 +590,12 @@ void device_point(float out[3], const struct device_scene *ds, const float point
 size_t device_scene_bindings(struct device_scene *ds, struct kernel_binding *bindings, bool shading) {
     struct kernel_binding all[DEVICE_SCENE_BINDINGS] = {
         {BINDING_NODES, &ds->nodes, NULL},         {BINDING_TRIANGLES, &ds->triangles, NULL}, {BINDING_SPHERES, &ds->spheres, NULL},
+        {BINDING_INSTANCES, &ds->instances, NULL},
         {BINDING_OBJECTS, &ds->objects, NULL},     {BINDING_MATERIALS, &ds->materials, NULL}, {BINDING_LIGHTS, &ds->lights, NULL},
         {BINDING_INDICES, &ds->indices, NULL},     {BINDING_NORMALS, &ds->normals, NULL},     {BINDING_GLOBALS, &ds->globals, NULL},
         {BINDING_UVS, &ds->uvs, NULL},             {BINDING_EMITTERS, &ds->emitters, NULL},
     };
-    size_t count = shading ? DEVICE_SCENE_BINDINGS : 3;
+    size_t count = shading ? DEVICE_SCENE_BINDINGS : 4;
     memcpy(bindings, all, count * sizeof *bindings);
     return count;
 }

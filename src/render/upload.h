@@ -13,7 +13,7 @@
 
 // Zeroed is empty; device_scene_finish accepts a half-made one. Arrays that the effects do not call for hold a single word.
 struct device_scene {
-    struct buffer nodes, triangles, spheres, objects, materials, lights, indices, normals, uvs, globals, emitters;
+    struct buffer nodes, triangles, spheres, instances, objects, materials, lights, indices, normals, uvs, globals, emitters;
     float base[3];          // scene units
     float scale;            // device units per scene unit
     uint32_t root;          // reference of the root, as in shared.h
@@ -31,6 +31,6 @@ void device_scene_finish(struct device_scene *ds, struct device *device);
 
 // Writes the bindings of the scene's arrays to bindings[0 …), at most `capacity`; returns how many.
 size_t device_scene_bindings(struct device_scene *ds, struct kernel_binding *bindings, bool shading);
-#define DEVICE_SCENE_BINDINGS 11
+#define DEVICE_SCENE_BINDINGS 12
 
 #endif

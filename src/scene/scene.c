@@ -168,8 +168,8 @@ static uint32_t shape_of(const uint32_t *first, uint32_t shape_count, uint32_t n
     return low;
 }
 
-// The instance that has this number among the triangles of all instances; each has some.
-static const struct scene_instance *instance_at(const struct scene *scene, uint32_t number) {
+// Each has some triangles.
+const struct scene_instance *scene_instance_at(const struct scene *scene, uint32_t number) {
     uint32_t low = 0, high = scene->instance_count;
     while (high - low > 1) {
         const uint32_t middle = low + (high - low) / 2;
@@ -188,7 +188,7 @@ struct scene_triangle scene_triangle_at(const struct scene *scene, uint32_t numb
         triangle.object = shape_of(scene->first_triangle, scene->shape_count, number);
         triangle.primitive = number - scene->first_triangle[triangle.object];
     } else {
-        const struct scene_instance *instance = instance_at(scene, number - others);
+        const struct scene_instance *instance = scene_instance_at(scene, number - others);
         triangle.object = instance->shape;
         triangle.primitive = number - others - instance->first;
     }

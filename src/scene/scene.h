@@ -191,6 +191,9 @@ uint32_t scene_sphere_count(const struct scene *scene);
 // Triangles of all instances together.
 uint64_t scene_instanced_count(const struct scene *scene);
 
+// The instance whose triangle has this number among those of all instances.
+const struct scene_instance *scene_instance_at(const struct scene *scene, uint32_t number);
+
 // The mesh that a shape draws: its own, or an instance's prototype.
 const struct scene_mesh *scene_mesh_of(const struct scene *scene, uint32_t object);
 
