@@ -21,7 +21,7 @@ void scene_place(float out[3], const struct scene_shape *shape, const float v[3]
     }
 }
 
-// The inverse transpose is the cofactors over the determinant. Scaled, so that the result is neither too large nor too small for fp32.
+// The inverse transpose is the cofactors over the determinant. Scaled by the largest, so that the result is neither too large nor too small for fp32.
 void scene_place_normal(double n[3], const struct scene_shape *shape) {
     double m[3][3], c[3][3], v[3], largest = 0;
     if (shape->type != SHAPE_INSTANCE) return;
@@ -30,11 +30,10 @@ void scene_place_normal(double n[3], const struct scene_shape *shape) {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
             c[i][k] = m[(i + 1) % 3][(k + 1) % 3] * m[(i + 2) % 3][(k + 2) % 3] - m[(i + 1) % 3][(k + 2) % 3] * m[(i + 2) % 3][(k + 1) % 3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) largest = fmax(largest, fabs(c[i][k]));
     const double sign = m[0][0] * c[0][0] + m[0][1] * c[0][1] + m[0][2] * c[0][2] < 0 ? -1 : 1;
-    for (int i = 0; i < 3; i++) {
-        v[i] = sign * ((c[i][0] * n[0] + c[i][1] * n[1]) + c[i][2] * n[2]);
-        largest = fmax(largest, fabs(v[i]));
-    }
+    for (int i = 0; i < 3; i++) v[i] = sign * ((c[i][0] * n[0] + c[i][1] * n[1]) + c[i][2] * n[2]);
     for (int i = 0; i < 3; i++) n[i] = largest > 0 ? v[i] / largest : 0;
 }
 

@@ -10,7 +10,7 @@
 // Where a vertex of a shape's mesh, or the center of a sphere, is at a time in [0, 1]. Of an instance v is in the prototype's coordinates.
 void scene_place(float out[3], const struct scene_shape *shape, const float v[3], float time);
 
-// A normal of a shape's mesh in scene coordinates, up to a positive factor: by the inverse transpose, which keeps it on its side of the surface.
+// A normal of a shape's mesh in scene coordinates, up to a positive factor that all its normals share: by the inverse transpose, which keeps it on its side of the surface.
 void scene_place_normal(double n[3], const struct scene_shape *shape);
 
 // The inverse of the 3 × 3 part of a placement, row-major, each entry right to 2^-33 of itself; false, and zeros, where the placement is singular, or so nearly that
