@@ -57,7 +57,7 @@ static const struct {
     {"transform_singular.json", ":3:69: shapes[0].transform is singular or nearly so (condition number inf), expected a transform"},
     {"truncated.json", ":4:24: not valid JSON: premature end of input near '\"cent'"},
     {"unknown_key.json", ":4:45: shapes[0] has an unknown key 'raduis', expected one of: type, center, radius, material, motion; did you"},
-    {"unknown_top_key.json", ":3:3: the scene has an unknown key 'light', expected one of: version, camera, film, background, environment,"},
+    {"unknown_top_key.json", ":3:3: the scene has an unknown key 'light', expected one of: $schema, version, camera, film, background,"},
     {"unknown_type.json", ":3:23: shapes[0].type is \"sfere\", expected \"sphere\", \"triangle\", \"mesh\", \"rectangle\" or \"instance\"; did you mean 'sphere'?"},
     {"utf16.json", ":1:1: the file is UTF-16, expected UTF-8"},
     {"version_2.json", ":1:13: version is 2, expected 1, the only version there is"},

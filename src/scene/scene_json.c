@@ -10,13 +10,15 @@ static bool read_version(const struct json_at *root) {
 }
 
 static bool read_scene(struct scene_build *build, const struct json_at *root) {
-    static const char *const keys[] = {"version", "camera",  "film",      "background", "environment", "ambient", "fog",
-                                       "paths",   "shadows", "materials", "lights",     "meshes",      "shapes",  NULL};
+    static const char *const keys[] = {"$schema", "version", "camera",    "film",   "background", "environment", "ambient", "fog",
+                                       "paths",   "shadows", "materials", "lights", "meshes",     "shapes",      NULL};
     struct scene *scene = build->scene;
     bool has_camera;
+    const char *schema; // for editors
     if (!json_is_object(root->value)) return at_expected(root, "an object");
-    if (!read_version(root) || !at_object(root, keys) || !part_film(&scene->film, root) || !part_paths(&scene->paths, root) ||
-        !part_fog(&scene->fog, root) || !at_get_float3(root, "background", RANGE_NOT_NEGATIVE, scene->background) ||
+    if (!read_version(root) || !at_object(root, keys) || !at_get_text(root, "$schema", "the path of a JSON Schema", &schema) ||
+        !part_film(&scene->film, root) || !part_paths(&scene->paths, root) || !part_fog(&scene->fog, root) ||
+        !at_get_float3(root, "background", RANGE_NOT_NEGATIVE, scene->background) ||
         !at_get_float3(root, "ambient", RANGE_NOT_NEGATIVE, scene->ambient) || !at_get_bool(root, "shadows", &scene->shadows) ||
         !part_camera(&scene->camera, root, &has_camera))
         return false;
