@@ -47,6 +47,9 @@ static inline int damage_file(const char *path, uint32_t seed, int changes) {
             bytes.data[at[k]] = (char)(random >> 16);
         }
         const char *changed = scratch_file("changed", bytes.data, bytes.size);
+        struct codes codes;
+        (void)codes_decode(&codes, scratch_context(), changed, &bytes, TRANSFER_SRGB);
+        codes_finish(&codes);
         for (int k = 3; k-- > 0;) bytes.data[at[k]] = before[k];
         if (image_read(&image, scratch_context(), changed)) {
             image_finish(&image);

@@ -31,10 +31,12 @@ static const struct json_key keys[] = {
 struct prototype {
     const char *name;
     uint32_t number, material; // in scene.prototypes, in scene.materials
+    double reach[3];           // largest absolute coordinates
 };
 struct prototypes {
     struct prototype *items;
     uint32_t count;
+    json_t *numbers; // by name
 };
 
 // Finds the material that a shape names; *out stays NULL when it names none.
@@ -189,6 +191,11 @@ static bool read_file(struct scene_shape *out, struct scene_build *build, const 
     return done && apply_transform(&out->mesh, at) && (normals != NORMALS_SMOOTH || mesh_smooth(&out->mesh, build->ctx, CREASE_DEG));
 }
 
+static void find_reach(double out[3], const struct scene_mesh *mesh) {
+    for (int i = 0; i < 3; i++) out[i] = 0;
+    for (size_t v = 0; v < 3 * (size_t)mesh->vertex_count; v++) out[v % 3] = fmax(out[v % 3], fabs(mesh->positions[v]));
+}
+
 // Of the shape that read_file makes, a prototype keeps the mesh; its material is that of triangles without one of their own.
 static bool read_prototype(struct scene_build *build, const struct json_at *at, struct prototype *out) {
     static const char *const prototype_keys[] = {"file", "transform", "normals", "material", NULL};
@@ -197,6 +204,7 @@ static bool read_prototype(struct scene_build *build, const struct json_at *at, 
     build->scene->prototypes[out->number] = shape.mesh;
     build->scene->prototype_count = out->number + 1;
     out->material = shape.material;
+    find_reach(out->reach, &shape.mesh);
     return done;
 }
 
@@ -207,13 +215,16 @@ static bool read_prototypes(struct prototypes *out, struct scene_build *build, c
     const size_t count = json_object_size(meshes.value);
     build->scene->prototypes = array_alloc(build->ctx, count, sizeof *build->scene->prototypes, "meshes");
     out->items = array_alloc(build->ctx, count, sizeof *out->items, "meshes");
+    out->numbers = json_object();
     if (!build->scene->prototypes || !out->items) return false;
     json_t *value;
     const char *name;
     json_object_foreach(meshes.value, name, value) {
         struct json_at at;
         struct prototype *item = &out->items[out->count];
-        *item = (struct prototype){.name = name, .number = out->count++};
+        *item = (struct prototype){.name = name, .number = out->count};
+        if (json_object_set_new(out->numbers, name, json_integer(out->count++)) != 0)
+            return fail(build->ctx, GN_LIMIT, "no memory for a mesh");
         if (!at_member(&at, &meshes, name) || !read_prototype(build, &at, item)) return false;
     }
     return true;
@@ -226,11 +237,10 @@ static const struct prototype *find_prototype(const struct prototypes *prototype
     const char *name;
     if (!at_require(shape, "mesh", "the name of a mesh") || !at_member(&at, shape, "mesh") || !at_text(&at, "the name of a mesh", &name))
         return NULL;
+    const json_t *number = json_object_get(prototypes->numbers, name);
+    if (number) return &prototypes->items[json_integer_value(number)];
     struct nearest nearest = nearest_to(name);
-    for (uint32_t i = 0; i < prototypes->count; i++) {
-        if (strcmp(prototypes->items[i].name, name) == 0) return &prototypes->items[i];
-        nearest_offer(&nearest, prototypes->items[i].name);
-    }
+    for (uint32_t i = 0; i < prototypes->count; i++) nearest_offer(&nearest, prototypes->items[i].name);
     at_fail(&at, "is \"%s\", expected the name of one of the %u meshes in \"meshes\"%s", excerpt_word(name).text, prototypes->count,
             nearest_hint(&nearest).text);
     return NULL;
@@ -248,17 +258,14 @@ static bool read_placement(float out[12], const struct json_at *shape) {
     return true;
 }
 
-// As scene.h says: every product and every sum is rounded to fp32.
-static float placed(const float row[4], const float p[3]) {
-    const float x = row[0] * p[0], y = row[1] * p[1], z = row[2] * p[2];
-    const float xy = x + y, xyz = xy + z;
-    return xyz + row[3];
-}
-
-static bool instance_fits(const struct scene_shape *shape, const struct scene_mesh *mesh) {
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        for (int i = 0; i < 3; i++)
-            if (!isfinite(placed(shape->placement + 4 * i, mesh->positions + 3 * v))) return false;
+// Whether points with coordinates up to `reach` stay in the range of fp32 where the shape takes them; with some room, as sums are rounded
+// there.
+static bool stays_in_range(const struct scene_shape *shape, const double reach[3]) {
+    for (int i = 0; i < 3; i++) {
+        const float *m = shape->placement + 4 * i;
+        const double placed = fabs(m[0]) * reach[0] + fabs(m[1]) * reach[1] + fabs(m[2]) * reach[2] + fabs(m[3]);
+        if ((shape->type == SHAPE_INSTANCE ? placed : reach[i]) + fabs(shape->motion[i]) > 0.999 * FLT_MAX) return false;
+    }
     return true;
 }
 
@@ -270,31 +277,19 @@ static bool read_instance(struct scene_shape *out, struct scene_build *build, co
     out->prototype = prototype->number;
     out->own_material = material != NULL;
     if (!material) out->material = prototype->material;
-    return instance_fits(out, &build->scene->prototypes[prototype->number]) ||
-           at_fail(at, "takes its mesh out of the range of fp32, expected smaller numbers");
+    return stays_in_range(out, prototype->reach) || at_fail(at, "takes its mesh out of the range of fp32, expected smaller numbers");
 }
 
 // ------------------------------------------------------------------------------------------------------------------ the list
 
-// Whether the shape's points stay in the range of fp32 when it has moved by `motion`.
-static bool motion_fits(const struct scene_shape *shape, const struct scene_mesh *mesh) {
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        for (int i = 0; i < 3; i++) {
-            const float *p = mesh->positions + 3 * v;
-            const float at = shape->type == SHAPE_INSTANCE ? placed(shape->placement + 4 * i, p) : p[i];
-            if (!isfinite(at + shape->motion[i])) return false;
-        }
-    for (int i = 0; i < 3; i++)
-        if (!isfinite(shape->center[i] + shape->motion[i])) return false;
-    return true;
-}
-
-static bool read_motion(struct scene_shape *out, const struct scene_build *build, const struct json_at *shape) {
+static bool read_motion(struct scene_shape *out, const struct prototypes *prototypes, const struct json_at *shape) {
     struct json_at at;
+    double reach[3] = {fabs(out->center[0]), fabs(out->center[1]), fabs(out->center[2])};
     if (!at_member(&at, shape, "motion")) return true;
     if (!at_floats(&at, RANGE_ANY, 3, out->motion)) return false;
     out->moves = out->motion[0] != 0 || out->motion[1] != 0 || out->motion[2] != 0;
-    return motion_fits(out, out->type == SHAPE_INSTANCE ? &build->scene->prototypes[out->prototype] : &out->mesh) ||
+    if (out->type != SHAPE_SPHERE && out->type != SHAPE_INSTANCE) find_reach(reach, &out->mesh);
+    return stays_in_range(out, out->type == SHAPE_INSTANCE ? prototypes->items[out->prototype].reach : reach) ||
            at_fail(&at, "takes the shape out of the range of fp32, expected smaller numbers");
 }
 
@@ -310,7 +305,7 @@ static bool read_shape(struct scene_shape *out, struct scene_build *build, const
                       : type == SHAPE_RECTANGLE ? read_rectangle(out, build, at)
                       : type == SHAPE_INSTANCE  ? read_instance(out, build, prototypes, at)
                                                 : read_file(out, build, at);
-    return done && read_motion(out, build, at);
+    return done && read_motion(out, prototypes, at);
 }
 
 static bool read_shapes(struct scene_build *build, const struct prototypes *prototypes, const struct json_at *root) {
@@ -333,6 +328,7 @@ static bool read_shapes(struct scene_build *build, const struct prototypes *prot
 bool part_shapes(struct scene_build *build, const struct json_at *root) {
     struct prototypes prototypes = {0};
     const bool done = read_prototypes(&prototypes, build, root) && read_shapes(build, &prototypes, root);
+    json_decref(prototypes.numbers);
     free(prototypes.items);
     return done;
 }

@@ -150,7 +150,7 @@ bool texture_need(struct texture_table *table, struct context *ctx, const struct
     for (*number = 1; *number <= table->sources.count; ++*number)
         if (same_picture(&sources[*number - 1], source) && same_lookup(&sources[*number - 1], source)) return true;
     struct codes codes;
-    if (!get_picture(&codes, table, ctx, source)) return false;
+    if (!progress(ctx, "scene", 0, -1) || !get_picture(&codes, table, ctx, source)) return false;
     const bool done = add_texture(table, ctx, source, &codes);
     codes_finish(&codes);
     return done;
