@@ -133,6 +133,13 @@ real3 bsdf_direction(bsdf b, real3 n, real3 wo, vec2 u, bool highlight) {
     return normalize_robust(w);
 }
 
+// The way for a path to go on that has mirrors only. False: the path ends here.
+bool bsdf_sample_mirror(bsdf b, real3 n, real3 ng, real3 wo, out real3 wi, out real3 weight) {
+    wi = HAS_REFLECTION ? mirror_direction(n, ng, wo) : real3(0.0);
+    weight = HAS_REFLECTION ? b.reflection : real3(0.0);
+    return total(weight) > 0.0 && !through_surface(ng, wi);
+}
+
 // A way for a path to go on: `choice` picks the lobe, u the direction in it. pdf is the density per solid angle, 0 for a mirror. False: the
 // path ends here.
 bool bsdf_sample(bsdf b, real3 n, real3 ng, real3 wo, vec2 u, float choice, out real3 wi, out real3 weight, out real pdf) {

@@ -41,6 +41,8 @@ bool is_denormal(vec3 v) {
 bool is_finite(double x) { return abs(x) <= 1.797e308lf; }
 #endif
 
+real length_of(real3 v) { return sqrt(dot(v, v)); }
+
 // 2^exponent for -126 <= exponent <= 127.
 float power_of_two(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
 

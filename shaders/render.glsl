@@ -10,24 +10,15 @@
 #include "constants.glsl"
 #include "film.glsl"
 #include "filter.glsl"
-#include "light.glsl"
 #include "pending.glsl"
-#include "phong.glsl"
 #include "ray.glsl"
-#include "sampler.glsl"
-#include "surface.glsl"
 #include "traverse.glsl"
 
 layout(local_size_x = GROUP_SIZE) in;
 layout(push_constant) uniform push { render_args args; };
-layout(set = 0, binding = BINDING_GLOBALS) uniform usamplerBuffer global_words;
+#include "path.glsl"
 layout(set = 0, binding = BINDING_CAMERA) uniform usamplerBuffer camera_words;
 layout(set = 0, binding = BINDING_STATUS) buffer status_buffer { status dispatch_status; };
-
-const bool HAS_LIGHT = HAS_DIFFUSE || HAS_SPECULAR;
-
-real3 background() { return real3(uintBitsToFloat(texelFetch(global_words, 0).xyz)); }
-real3 ambient() { return real3(uintBitsToFloat(texelFetch(global_words, 1).xyz)); }
 
 // The pixel of this invocation in the band's images; false beyond the film's edge.
 bool find_pixel(out ivec2 at) {
@@ -90,22 +81,10 @@ ray camera_ray(uvec2 pixel, uint number) {
     return r;
 }
 
-// What light `number` would add at s, seen along -v, if nothing is in its way; and the way to it.
-real3 light_reflect(surface s, phong_material m, real3 v, uint number, out real3 position) {
-    uvec4 w0 = light_word(number, 0u), w1 = light_word(number, 1u);
-    position = light_xyz(w0);
-    real3 way = position - s.p;
-    real3 l = normalize_any(way);
-    real distance = dot(way, l) * args.corner.w;
-    real3 light = light_arriving(light_xyz(w1), uintBitsToFloat(w1.w), distance);
-    if (w0.w != POINT_LIGHT) return real3(0.0);
-    return light * phong_reflect(m, s.n, l, v, HAS_DIFFUSE, HAS_SPECULAR);
-}
-
-// The sample of a camera ray that hits s, still black.
-film_sample black_sample(surface s, ray r, hit h) {
-    real depth = h.t * sqrt(dot(r.d, r.d)) * args.corner.w;
-    return film_sample(vec3(0.0), vec3(s.n), float(depth), h.object, h.index);
+// The sample of a path that comes to s first, still black. Behind a hole (`behind`) the ray does not begin at the camera.
+film_sample black_sample(surface s, ray camera, ray r, hit h, bool behind) {
+    real depth = HAS_ALPHA && behind ? length_of(s.p - camera.o) : h.t * length_of(r.d);
+    return film_sample(vec3(0.0), vec3(s.n), float(depth * args.corner.w), h.object, h.index);
 }
 
 // How a sample ended.
@@ -113,60 +92,80 @@ film_sample black_sample(surface s, ray r, hit h) {
 #define SAMPLE_OUT_OF_STEPS 1u
 #define SAMPLE_UNDECIDED 2u
 
-// One sample: the camera ray, and the shadow rays of what it hits. Only with SAMPLE_DONE is the result to be used.
-film_sample shoot_sample(ray camera, inout int steps, inout uint rays, inout pending_sample pending, out uint end) {
+// Where a ray goes on behind a place where the surface that it hit is not there.
+ray pass_through(ray r, surface s, bool shadow) {
+    s.ng = -s.ng;
+    real3 start = leave_surface(s);
+    ray on = r;
+    on.o = start;
+    on.self = leave_self(s);
+    if (shadow && r.tmax != INFINITY) on.d = r.d + (r.o - start) / r.tmax;
+    return on;
+}
+
+// A path comes to a surface: what shines there, and what stands ready for light.
+void arrive(inout path p, inout vertex at, surface s, material m, ray r, hit h, inout int steps) {
+    at = vertex(s, m, -normalize_tier(r.d), false);
+    p.light = is_specular(m) ? LIGHTS_DONE : 0u;
+    if (HAS_ABSORPTION) p.throughput *= absorb_on_the_way(p, h.t * length_of(r.d));
+    if (HAS_EMISSION) add_emission(p, s, m, r, h, steps);
+    p.radiance += p.throughput * (ambient() * m.ambient);
+}
+
+// One sample: the path of a camera ray, with a shadow ray to each light from each of its points. Only with SAMPLE_DONE is the result to be used.
+film_sample shoot_sample(ray camera, draws d, inout int steps, inout uint rays, inout pending_sample pending, out uint end) {
     film_sample result = film_sample(vec3(0.0), vec3(0.0), 0.0, -1, -1);
-    real3 radiance = background();
-    surface s;
-    phong_material m;
-    real3 v = real3(0.0), adds = real3(0.0);
-    uint light = 0u;            // the next one to look at
+    path p = path_begin(camera);
+    vertex at;
     uint number = 0u;           // of the ray in the sample
-    bool more = true;
+    bool shadow = false, more;
     ray r = camera;
     end = SAMPLE_DONE;
     do {
-        bool first = number == 0u;
         hit h;
+        bool any = shadow && !HAS_ALPHA;
         if (!pending_answer(pending, number, h)) {
-            search q = traverse(r, !first, args.root, steps);
+            search q = traverse(r, any, args.root, steps);
             h = q.best;
-            if (search_undecided(q, !first)) {
-                pending_ask(pending, r, !first, number);
+            if (search_undecided(q, any)) {
+                pending_ask(pending, r, any, number);
                 end = SAMPLE_UNDECIDED;
                 return result;
             }
         }
-        number++;
-        if (!first) {
-            if (h.object < 0) radiance += adds;
-        } else if (h.object >= 0) {
+        surface s;
+        material m;
+        bool there = h.object >= 0, hole = false, ends = false;
+        bool scatters = HAS_FOG && !shadow && fog_scatters(r, h.t, draw(d, PAIR_FOG + number).x, at);
+        if (there && !scatters && (!shadow || HAS_ALPHA)) {
             s = surface_at(r, h);
-            m = material_at(s.material);
-            v = -normalize_tier(r.d);
-            radiance = ambient() * m.ambient;
-            result = black_sample(s, r, h);
+            m = material_at(s);
+            if (HAS_ALPHA) hole = !(real(draw(d, PAIR_ALPHA + number).x) < m.alpha);
+        }
+        number++;
+        if (scatters) {
+            p.light = 0u;
+            p.throughput *= real3(uintBitsToFloat(global_word(2).xyz));
+        } else if (hole) {
+            r = pass_through(r, s, shadow);
+        } else if (shadow) {
+            if (!there) p.radiance += p.adds;
+        } else if (there) {
+            arrive(p, at, s, m, r, h, steps);
+            if (p.depth == 0u) result = black_sample(s, camera, r, h, number > 1u);
         } else {
-            light = args.light_count;
+            add_sky(p, r);
+            ends = true;
         }
-        more = false;
-        while (HAS_LIGHT && !more && light < args.light_count && steps > 0) {
-            steps--;
-            real3 position;
-            adds = light_reflect(s, m, v, light, position);
-            light++;
-            if (HAS_SHADOWS) {
-                real3 start = leave_surface(s);
-                more = adds != real3(0.0);
-                r = ray_make(start, position - start, 0.0, 1.0, leave_self(s));
-            } else {
-                radiance += adds;
-            }
+        more = hole;
+        if (!hole && !ends) {
+            shadow = shadow_ray(p, at, d, steps, r);
+            more = shadow || (GOES_ON && next_ray(p, at, d, r));
         }
-        if (HAS_LIGHT && !more && light < args.light_count) steps = 0;
+        steps--;
     } while (more && steps > 0);
     rays += number;
-    result.radiance = vec3(radiance);
+    result.radiance = vec3(p.radiance);
     if (more || steps <= 0) end = SAMPLE_OUT_OF_STEPS;
     return result;
 }
@@ -177,7 +176,8 @@ void expose(inout film_pixel pixel, uvec2 position, inout pending_sample pending
     uint end = SAMPLE_DONE;
     uint sample_end = RESOLVE ? pixel.done + 1u : args.sample_end;
     while (pixel.done < sample_end && end == SAMPLE_DONE) {
-        film_sample result = shoot_sample(camera_ray(position, pixel.done), steps, rays, pending, end);
+        draws d = draws(args.seed, position, pixel.done);
+        film_sample result = shoot_sample(camera_ray(position, pixel.done), d, steps, rays, pending, end);
         steps--;
         if (end == SAMPLE_DONE) film_add(pixel, result);
     }

@@ -194,8 +194,12 @@
 // Globals: 4 word4:
 //   0: background.rgb, the most rays of a path after the camera's     1: ambient.rgb, the ray from which on paths end by chance
 //   2: fog: albedo.rgb, density per device unit                       3: fog: center.xyz and radius of the ball that it fills; and
-//   4: fog: anisotropy, 0, 0, 0
+//   4: fog: anisotropy; SWITCH_* bits, 0, 0
 #define GLOBAL_WORDS 5
+// What a scene may switch off by itself, or lacks: kernels with everything in them ask before they do what would show.
+#define SWITCH_SHADOWS 1u
+#define SWITCH_INDIRECT 2u
+#define SWITCH_ENVIRONMENT 4u
 
 // Camera: what is not in render_args (render/camera.h), in device units; a single word where no effect calls for it.
 //   0: travel.xyz, lens      1: aim, 0, 0, 0

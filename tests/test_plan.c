@@ -107,7 +107,7 @@ static void reasons_name_the_culprit(void **state) {
                                                       "no material in use sends out light",
                                                       "no light has a size",
                                                       "the background is one colour",
-                                                      "no material in use is Blinn-Phong",
+                                                      "no material in use has a Blinn-Phong's specular color that a light could show",
                                                       "no material in use is metallic-roughness",
                                                       "no material in use has a texture",
                                                       "no material in use has a normal map",

@@ -2,6 +2,7 @@
 #include "effects/plan.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,7 @@ struct facts {
     uint64_t triangles;
     uint32_t spheres;
     uint32_t last_shape; // that is there
+    bool lit_otherwise;  // by lobes whose effects have a higher number
 };
 #define NOT_USED UINT32_MAX
 
@@ -66,32 +68,68 @@ static bool facts_init(struct facts *out, struct context *ctx, const struct scen
     return true;
 }
 
-// The first light with intensity in a channel, or light_count.
-static uint32_t first_light(const struct scene *scene, int channel) {
-    uint32_t i = 0;
-    while (i < scene->light_count && !(scene->lights[i].intensity[channel] > 0)) i++;
-    return i;
+static bool any_positive(const float v[3]) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
+
+// The brightest red, green or blue that a shape sends out by itself.
+static float emission_of(const struct scene *scene, uint32_t shape, int channel) {
+    const struct scene_mesh *mesh = &scene->shapes[shape].mesh;
+    float most = 0;
+    for (uint32_t i = 0; mesh->materials && i < mesh->triangle_count; i++) most = fmaxf(most, scene->materials[mesh->materials[i]].emission[channel]);
+    return mesh->materials ? most : scene->materials[scene->shapes[shape].material].emission[channel];
 }
 
+static float intensity_of(const struct scene *scene, uint32_t light, int channel) {
+    const struct scene_light *l = &scene->lights[light];
+    return l->type == LIGHT_AREA ? emission_of(scene, l->shape, channel) : l->intensity[channel];
+}
+
+// What lights surfaces in a channel: the number of a light, LIT_BY_SKY, LIT_BY_ALL where surfaces light each other, or LIT_BY_NONE.
+enum { LIT_BY_NONE = -1, LIT_BY_SKY = -2, LIT_BY_ALL = -3 };
+
+static int64_t lit_by(const struct scene *scene, int channel) {
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        if (intensity_of(scene, i, channel) > 0) return i;
+    if (scene->environment.width > 0 && scene->environment.scale > 0) return LIT_BY_SKY;
+    return scene->paths.indirect && scene->paths.max_depth > 0 ? LIT_BY_ALL : LIT_BY_NONE;
+}
+
+struct source_text { char text[32]; };
+static struct source_text source_text(int64_t source) {
+    struct source_text out;
+    if (source >= 0) snprintf(out.text, sizeof out.text, "light %u", (uint32_t)source);
+    else snprintf(out.text, sizeof out.text, "%s", source == LIT_BY_SKY ? "the environment" : "indirect light");
+    return out;
+}
+
+static bool has_diffuse(const struct scene_material *m) { return m->model <= MODEL_METALLIC_ROUGHNESS; }
+static bool has_highlight(const struct scene_material *m) { return m->model == MODEL_PHONG; }
 static const float *diffuse_of(const struct scene_material *material) { return material->diffuse; }
 static const float *specular_of(const struct scene_material *material) { return material->specular; }
 
+// Which materials have a part, its color, and its name.
+struct lobe {
+    bool (*there)(const struct scene_material *);
+    const float *(*color)(const struct scene_material *);
+    const char *name;
+};
+
 // A light and a material in use whose colors have a channel in common: the product of intensity and color is 0 for all others, and so is
 // what they add.
-static bool light_meets(const struct facts *facts, const float *(*color)(const struct scene_material *), const char *name, char *because) {
+static bool light_meets(const struct facts *facts, const struct lobe *lobe, char *because) {
     const struct scene *scene = facts->scene;
-    uint32_t light[3], shining = 0;
+    int64_t source[3];
+    int shining = 0;
     for (int k = 0; k < 3; k++) {
-        light[k] = first_light(scene, k);
-        shining += light[k] < scene->light_count;
+        source[k] = lit_by(scene, k);
+        shining += source[k] != LIT_BY_NONE;
     }
     if (shining == 0) return says(because, false, scene->light_count ? "no light has any intensity" : "there are no lights");
     for (uint32_t i = 0; i < scene->material_count; i++)
         for (int k = 0; k < 3; k++)
-            if (facts->used_by[i] != NOT_USED && light[k] < scene->light_count && color(&scene->materials[i])[k] > 0)
-                return says(because, true, "light %u and the %s color of material '%s' on shape %u", light[k], name,
+            if (facts->used_by[i] != NOT_USED && source[k] != LIT_BY_NONE && lobe->there(&scene->materials[i]) && lobe->color(&scene->materials[i])[k] > 0)
+                return says(because, true, "%s and the %s color of material '%s' on shape %u", source_text(source[k]).text, lobe->name,
                             excerpt_word(scene->materials[i].name).text, facts->used_by[i]);
-    return says(because, false, "no material in use has a %s color that a light could show", name);
+    return says(because, false, "no material in use has a %s color that a light could show", lobe->name);
 }
 
 // ------------------------------------------------------------------------------------------------------------------- rules
@@ -127,8 +165,15 @@ static bool rule_SMOOTH_NORMALS(const struct facts *facts, char *because) {
     return says(because, false, "no mesh has vertex normals");
 }
 
-static bool rule_DIFFUSE(const struct facts *facts, char *because) { return light_meets(facts, diffuse_of, "diffuse", because); }
-static bool rule_SPECULAR(const struct facts *facts, char *because) { return light_meets(facts, specular_of, "specular", because); }
+static bool rule_DIFFUSE(const struct facts *facts, char *because) {
+    static const struct lobe lobe = {has_diffuse, diffuse_of, "diffuse"};
+    return light_meets(facts, &lobe, because);
+}
+
+static bool rule_SPECULAR(const struct facts *facts, char *because) {
+    static const struct lobe lobe = {has_highlight, specular_of, "specular"};
+    return light_meets(facts, &lobe, because);
+}
 
 // Where a point certainly is: 1 inside the sphere, -1 outside, 0 on it or too near to tell. The sum is off by a few 2^-53 of itself.
 static int side_of(const struct scene_shape *sphere, const float point[3]) {
@@ -146,7 +191,21 @@ static bool sphere_shadows_itself(const struct scene *scene, const struct scene_
     if (sphere->moves) return true; // where it is at the ray's time is not looked at
     if (side_of(sphere, scene->camera.position) < 0) return false;
     for (uint32_t i = 0; i < scene->light_count; i++)
-        if (side_of(sphere, scene->lights[i].position) <= 0) return true;
+        if (scene->lights[i].type == LIGHT_DIRECTIONAL || side_of(sphere, scene->lights[i].position) <= 0) return true;
+    return scene->environment.width > 0;
+}
+
+// Whether rays may come to a sphere's inside though the camera is outside, or from where the argument above does not look.
+static bool light_goes_round(const struct scene *scene) {
+    const struct scene_camera *camera = &scene->camera;
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        if (scene->materials[i].model == MODEL_DIELECTRIC || scene->materials[i].alpha_mode != ALPHA_OPAQUE || any_positive(scene->materials[i].emission)) return true;
+    return scene->fog.density > 0 || camera->moves || camera->lens_radius > 0;
+}
+
+static bool shape_moves(const struct scene *scene) {
+    for (uint32_t i = 0; i < scene->shape_count; i++)
+        if (scene->shapes[i].moves || scene->shapes[i].type == SHAPE_INSTANCE) return true;
     return false;
 }
 
@@ -154,11 +213,14 @@ static bool sphere_shadows_itself(const struct scene *scene, const struct scene_
 static bool rule_SHADOWS(const struct facts *facts, char *because) {
     const struct scene *scene = facts->scene;
     if (!scene->shadows) return says(because, false, "the scene switches shadows off");
-    if (!(facts->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR))) return says(because, false, "nothing is lit that could lie in shadow");
+    if (scene->fog.density > 0) return says(because, true, "fog, and %" PRIu64 " primitives that shade it", facts->triangles + facts->spheres);
+    if (!(facts->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR)) && !facts->lit_otherwise)
+        return says(because, false, "nothing is lit that could lie in shadow");
     const struct scene_shape *last = &scene->shapes[facts->last_shape];
+    if (shape_moves(scene)) return says(because, true, "light and instances or shapes that move");
     if (facts->triangles + facts->spheres > 1) return says(because, true, "light and %" PRIu64 " primitives", facts->triangles + facts->spheres);
     if (facts->triangles == 1) return says(because, false, "a triangle alone casts no shadow on itself");
-    if (sphere_shadows_itself(scene, last)) return says(because, true, "shape %u, a sphere that is seen from inside", facts->last_shape);
+    if (light_goes_round(scene) || sphere_shadows_itself(scene, last)) return says(because, true, "shape %u, a sphere that is seen from inside", facts->last_shape);
     return says(because, false, "a sphere alone casts no shadow on the side that is lit");
 }
 
@@ -218,7 +280,6 @@ static bool material_calls(const struct facts *facts, bool (*calls)(const struct
     return says(because, false, "%s", none);
 }
 
-static bool any_positive(const float v[3]) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
 static bool emits(const struct scene_material *m) { return any_positive(m->emission); }
 static bool rule_EMISSION(const struct facts *facts, char *because) { return material_calls(facts, emits, "no material in use sends out light", because); }
 
@@ -236,8 +297,11 @@ static bool rule_ENVIRONMENT(const struct facts *facts, char *because) {
 
 // -------------------------------------------------------------------------------------------------------------- materials
 
-static bool is_blinn(const struct scene_material *m) { return m->model == MODEL_BLINN_PHONG && any_positive(m->specular); }
-static bool rule_BLINN(const struct facts *facts, char *because) { return material_calls(facts, is_blinn, "no material in use is Blinn-Phong", because); }
+static bool is_blinn(const struct scene_material *m) { return m->model == MODEL_BLINN_PHONG; }
+static bool rule_BLINN(const struct facts *facts, char *because) {
+    static const struct lobe lobe = {is_blinn, specular_of, "Blinn-Phong's specular"};
+    return light_meets(facts, &lobe, because);
+}
 
 static bool is_ggx(const struct scene_material *m) { return m->model == MODEL_METALLIC_ROUGHNESS; }
 static bool rule_GGX(const struct facts *facts, char *because) { return material_calls(facts, is_ggx, "no material in use is metallic-roughness", because); }
@@ -299,6 +363,16 @@ void effect_names(uint32_t bits, char *text, size_t capacity) {
             used += (size_t)snprintf(text + used, capacity - used, "%s%s", used ? "," : "", effects[i].name);
 }
 
+// Highlights whose rules come later, and that need no diffuse color beside them.
+static bool is_lit_otherwise(const struct facts *facts) {
+    const struct scene *scene = facts->scene;
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        const struct scene_material *m = &scene->materials[i];
+        if (facts->used_by[i] != NOT_USED && (m->model == MODEL_METALLIC_ROUGHNESS || (m->model == MODEL_BLINN_PHONG && any_positive(m->specular)))) return true;
+    }
+    return false;
+}
+
 static bool parse_one(uint32_t *bits, struct context *ctx, const char *name, size_t length) {
     char all[512], wanted[64];
     snprintf(wanted, sizeof wanted, "%.*s", (int)(length < 60 ? length : 60), name);
@@ -331,6 +405,7 @@ bool plan_make(struct plan *out, struct context *ctx, const struct scene *scene,
     uint32_t disabled;
     struct facts facts;
     if (!parse_disabled(&disabled, ctx, params->disable) || !facts_init(&facts, ctx, scene, disabled, params->spp)) return false;
+    facts.lit_otherwise = is_lit_otherwise(&facts);
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
         bool on = effects[i].rule(&facts, out->because[i]);
         if (on && disabled & 1u << i & EFFECT_BVH) {

@@ -4,7 +4,7 @@
 #include "base/threads.h"
 #include "reference/reference.h"
 #include "reference/sampler.h"
-#include "reference/shade.h"
+#include "reference/path.h"
 #include "render/base.h"
 #include "render/camera.h"
 #include "render/filter_table.h"
@@ -16,7 +16,7 @@ struct picture {
     struct reference_film *film;
     const struct scene *scene;
     const struct reference_params *params;
-    struct ref_world world;
+    struct path_world world;
     struct camera_rays camera;
     struct filter_table filter;
     atomic_uint_fast64_t rays, nonfinite_pixels;
@@ -37,13 +37,6 @@ static void add_color(struct pixel *pixel, const double color[3]) {
     }
     for (int i = 0; i < 3; i++) pixel->color[i] += color[i];
     pixel->finite++;
-}
-
-static void add_surface(struct pixel *pixel, const struct ref_ray *ray, const struct surface *surface) {
-    double length = sqrt(ray->d[0] * ray->d[0] + ray->d[1] * ray->d[1] + ray->d[2] * ray->d[2]);
-    pixel->depth += interval_mid(surface->crossing.t) * length;
-    for (int i = 0; i < 3; i++) pixel->normal[i] += surface->n[i];
-    pixel->hits++;
 }
 
 static struct camera_sample draw_sample(const struct picture *picture, uint32_t x, uint32_t y, uint32_t number) {
@@ -75,20 +68,24 @@ static bool make_ray(struct ref_ray *out, const struct picture *picture, uint32_
 }
 
 static void add_sample(struct pixel *pixel, const struct picture *picture, uint32_t x, uint32_t y, uint32_t sample) {
+    const struct reference_params *params = picture->params;
+    const struct draws draws = {.seed = params->seed, .x = x, .y = y, .number = sample, .independent = params->independent_samples};
     struct ref_ray ray;
-    struct crossing crossing;
-    double color[3] = {picture->scene->background[0], picture->scene->background[1], picture->scene->background[2]};
-    pixel->rays++;
-    if (make_ray(&ray, picture, x, y, sample) && closest_hit(&crossing, &picture->world, &ray)) {
-        struct surface surface = surface_at(&picture->world, &ray, &crossing);
-        shade(color, &pixel->rays, &picture->world, &surface);
-        add_surface(pixel, &ray, &surface);
-        if (sample == 0) {
-            pixel->object = (int32_t)crossing.object;
-            pixel->primitive = (int32_t)crossing.primitive;
-        }
+    struct path_result result;
+    if (make_ray(&ray, picture, x, y, sample)) {
+        path_follow(&result, &picture->world, &ray, &draws);
+    } else {
+        path_miss(&result, &picture->world);
     }
-    add_color(pixel, color);
+    pixel->rays += result.rays;
+    add_color(pixel, result.radiance);
+    if (!result.hit) return;
+    pixel->depth += result.depth;
+    for (int i = 0; i < 3; i++) pixel->normal[i] += result.surface.n[i];
+    pixel->hits++;
+    if (sample > 0) return;
+    pixel->object = (int32_t)result.surface.crossing.object;
+    pixel->primitive = (int32_t)result.surface.crossing.primitive;
 }
 
 static void store(struct reference_film *film, size_t index, const struct pixel *pixel) {
@@ -134,16 +131,17 @@ static bool film_init(struct reference_film *out, struct context *ctx, const str
 bool reference_render(struct reference_film *out, struct context *ctx, const struct scene *scene, const struct bvh *bvh,
                       const struct reference_params *params) {
     *out = (struct reference_film){.rays = 0};
-    if (!film_init(out, ctx, params)) goto fail;
     struct picture picture = {.film = out, .scene = scene, .params = params};
-    picture.world = ref_world_make(scene, bvh, params->effects);
+    if (!film_init(out, ctx, params) || !path_world_init(&picture.world, ctx, scene, bvh, params->effects)) goto fail;
     float base[3];
     scene_base(base, scene, scene->camera.position);
     camera_rays_make(&picture.camera, &scene->camera, params->width, params->height);
     camera_rays_rebase(&picture.camera, base);
     filter_table_make(&picture.filter, scene->film.filter, scene->film.filter_radius);
     size_t grain = CHUNK_SAMPLES / params->spp;
-    if (!parallel_for_progress(ctx, "reference", (size_t)out->color.width * out->color.height, grain, render_some, &picture)) goto fail;
+    const bool done = parallel_for_progress(ctx, "reference", (size_t)out->color.width * out->color.height, grain, render_some, &picture);
+    path_world_finish(&picture.world);
+    if (!done) goto fail;
     out->rays = picture.rays;
     out->nonfinite_pixels = picture.nonfinite_pixels;
     return true;

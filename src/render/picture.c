@@ -12,6 +12,8 @@
 #include "render/render.h"
 #include "render/upload.h"
 #include "render/upload_camera.h"
+#include "render/upload_sky.h"
+#include "render/upload_textures.h"
 
 #define BAND_PIXELS (4u << 20)      // of the film images: 64 MiB each, whatever the picture's size
 #define CHUNK_SAMPLES 16            // samples a pixel gets in one dispatch, at most
@@ -22,6 +24,8 @@ struct pass {
     struct device *device;
     const struct render_params *params;
     struct device_scene ds;
+    struct device_textures textures;
+    struct device_sky sky;
     struct storage_image film, residue, shade, id;
     struct buffer status, camera;
     struct camera_rays camera_rays;
@@ -63,6 +67,9 @@ static bool make_status(struct buffer *status, struct context *ctx, struct devic
 
 static bool make_kernel(struct pass *p) {
     p->binding_count = device_scene_bindings(&p->ds, p->bindings, true);
+    device_textures_bindings(&p->textures, p->bindings + p->binding_count);
+    device_sky_bindings(&p->sky, p->bindings + p->binding_count + DEVICE_TEXTURES_BINDINGS);
+    p->binding_count += DEVICE_TEXTURES_BINDINGS + DEVICE_SKY_BINDINGS;
     struct kernel_binding others[] = {
         {BINDING_FILM, NULL, &p->film},      {BINDING_RESIDUE, NULL, &p->residue}, {BINDING_AOV_SHADE, NULL, &p->shade},
         {BINDING_AOV_ID, NULL, &p->id},      {BINDING_STATUS, &p->status, NULL},   {BINDING_PENDING, &p->pending.buffer, NULL},
@@ -283,6 +290,8 @@ static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh
     struct render_film *out = p->out;
     double start = clock_seconds();
     if (!device_scene_init(&p->ds, p->ctx, p->device, scene, bvh, p->params->effects, scene->camera.position, true)) return false;
+    if (!device_textures_init(&p->textures, p->ctx, p->device, scene, p->params->effects)) return false;
+    if (!device_sky_init(&p->sky, p->ctx, p->device, scene, p->params->effects)) return false;
     if (!make_film(p) || !make_status(&p->status, p->ctx, p->device)) return false;
     camera_rays_make(&p->camera_rays, &scene->camera, p->params->width, p->params->height);
     const struct upload_camera_params camera = {&p->camera_rays, &scene->film, p->ds.scale, p->params->effects};
@@ -310,6 +319,8 @@ static void pass_finish(struct pass *p) {
     storage_image_finish(&p->residue, p->device);
     storage_image_finish(&p->shade, p->device);
     storage_image_finish(&p->id, p->device);
+    device_textures_finish(&p->textures, p->device);
+    device_sky_finish(&p->sky, p->device);
     device_scene_finish(&p->ds, p->device);
 }
 

@@ -360,6 +360,7 @@ static bool fill_instances(void *data, void *to, uint64_t offset, uint64_t size)
 
 // ------------------------------------------------------------------------------------------------------------- shading
 
+#define EFFECTS_LIT (EFFECT_DIFFUSE | EFFECT_SPECULAR | EFFECT_BLINN | EFFECT_GGX | EFFECT_FOG) // that ask lights
 #define EFFECTS_WITH_UVS (EFFECT_TEXTURES | EFFECT_NORMAL_MAPS | EFFECT_ALPHA)
 
 // Whether kernels look at a mesh's vertices once more after the hit.
@@ -429,7 +430,7 @@ static bool fill_normals(void *data, void *to, uint64_t offset, uint64_t size) {
 static bool fill_uvs(void *data, void *to, uint64_t offset, uint64_t size) { return fill_attribute(data, to, offset, size, 2, uvs_of); }
 
 // Lights that any effect reads.
-static uint32_t light_count(const struct upload *u) { return u->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR) ? u->scene->light_count : 0; }
+static uint32_t light_count(const struct upload *u) { return u->effects & EFFECTS_LIT ? u->scene->light_count : 0; }
 
 static uint32_t light_of(const struct upload *u, uint32_t object) {
     const uint32_t light = scene_light_of(u->scene, object);
@@ -496,6 +497,10 @@ static bool fill_emitters(void *data, void *to, uint64_t offset, uint64_t size) 
     return true;
 }
 
+static uint32_t switches_of(const struct scene *scene) {
+    return (scene->shadows ? SWITCH_SHADOWS : 0) | (scene->paths.indirect ? SWITCH_INDIRECT : 0) | (scene->environment.width > 0 ? SWITCH_ENVIRONMENT : 0);
+}
+
 static bool fill_globals(void *data, void *to, uint64_t offset, uint64_t size) {
     const struct upload *u = data;
     const struct scene *scene = u->scene;
@@ -507,7 +512,7 @@ static bool fill_globals(void *data, void *to, uint64_t offset, uint64_t size) {
         word4_of(scene->ambient, scene->paths.roulette_depth),
         word4_of(scene->fog.albedo, float_bits(scene->fog.density / u->scale)),
         word4_of(center, float_bits((float)(fog.radius * u->scale))),
-        {{float_bits(scene->fog.anisotropy), 0, 0, 0}},
+        {{float_bits(scene->fog.anisotropy), switches_of(scene), 0, 0}},
     };
     memcpy(to, (const char *)words + offset, size);
     return true;
