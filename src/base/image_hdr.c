@@ -32,7 +32,10 @@ static bool hdr_fail(const struct hdr *hdr, const char *what) {
 static bool next_line(struct hdr *hdr, char *line, size_t capacity) {
     const unsigned char *newline = memchr(hdr->at, '\n', (size_t)(hdr->end - hdr->at));
     if (!newline) return false;
-    snprintf(line, capacity, "%.*s", (int)(newline - hdr->at < 256 ? newline - hdr->at : 256), (const char *)hdr->at);
+    size_t length = (size_t)(newline - hdr->at);
+    if (length > capacity - 1) length = capacity - 1;
+    memcpy(line, hdr->at, length);
+    line[length] = '\0';
     line[strcspn(line, "\r")] = '\0';
     hdr->at = newline + 1;
     return true;
