@@ -250,6 +250,23 @@
 #define STRESS_DISK 8u              // u, v: a point of the lens
 #define STRESS_LENS 9u              // direction, du, dv, aim, u, v: the direction through that point
 #define STRESS_NUMBERS_IN 16u
+// Functions of stress_shading.comp, and the effect that each is compiled with.
+#define SHADING_FRAME 0u            // INDIRECT: n
+#define SHADING_LOBE 1u             // INDIRECT: model, shininess or roughness, n, wo, u, choice, Kd, Ks, share of a mirror
+#define SHADING_COSINE 2u           // INDIRECT: u
+#define SHADING_MIRRORS 3u          // REFLECTION: two normals, direction, bounces
+#define SHADING_FACETS 4u           // GGX: n, wo, wi, roughness
+#define SHADING_SCHLICK 5u          // GGX: f0, cosine
+#define SHADING_GLASS 6u            // REFRACTION: n, ng, wo, index here, beyond, choice
+#define SHADING_INSIDE 7u           // REFRACTION: point on a unit sphere, direction, bounces
+#define SHADING_LEFT 8u             // ABSORPTION: σ, way
+#define SHADING_SPHERE_LIGHT 9u     // SOFT_SHADOWS: center, radius, u
+#define SHADING_TEXELS 10u          // TEXTURES: coordinate, texels, wrap, 1 for nearest
+#define SHADING_SPHERE_UV 11u       // TEXTURES: n
+#define SHADING_SKY_UV 12u          // ENVIRONMENT: a direction
+#define SHADING_BEND 13u            // NORMAL_MAPS: n, two edges, what uv change along them, texel
+#define STRESS_SHADING_IN 16u
+#define STRESS_SHADING_OUT 8u
 #define STRESS_BOX_IN 14u
 #define STRESS_LEAVE_IN 9u
 #define STRESS_LEAVE_OUT 20u
@@ -321,7 +338,7 @@ struct stress_args {
     vec4 base;              // xyz and w as base and scale in render/upload.h
     uint count;             // cases
     uint root;              // reference of the root
-    uint what;              // stress_numbers.comp: STRESS_*, the function
+    uint what;              // stress_numbers.comp: STRESS_*, stress_shading.comp: SHADING_*, the function
 };
 
 // What a dispatch reports; the host zeroes it before.

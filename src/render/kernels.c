@@ -11,6 +11,8 @@
 #include "kernels/stress_leave_fp64.h"
 #include "kernels/stress_numbers.h"
 #include "kernels/stress_numbers_fp64.h"
+#include "kernels/stress_shading.h"
+#include "kernels/stress_shading_fp64.h"
 #include "kernels/trace.h"
 #include "kernels/trace_again.h"
 #include "kernels/trace_fp64.h"
@@ -30,9 +32,11 @@ static const struct embedded KERNELS[] = {
     [KERNEL_STRESS_BOX] = {"stress_box", kernel_stress_box, sizeof kernel_stress_box},
     [KERNEL_STRESS_LEAVE] = {"stress_leave", kernel_stress_leave, sizeof kernel_stress_leave},
     [KERNEL_STRESS_NUMBERS] = {"stress_numbers", kernel_stress_numbers, sizeof kernel_stress_numbers},
+    [KERNEL_STRESS_SHADING] = {"stress_shading", kernel_stress_shading, sizeof kernel_stress_shading},
     [KERNEL_STRESS_BOX_FP64] = {"stress_box_fp64", kernel_stress_box_fp64, sizeof kernel_stress_box_fp64},
     [KERNEL_STRESS_LEAVE_FP64] = {"stress_leave_fp64", kernel_stress_leave_fp64, sizeof kernel_stress_leave_fp64},
     [KERNEL_STRESS_NUMBERS_FP64] = {"stress_numbers_fp64", kernel_stress_numbers_fp64, sizeof kernel_stress_numbers_fp64},
+    [KERNEL_STRESS_SHADING_FP64] = {"stress_shading_fp64", kernel_stress_shading_fp64, sizeof kernel_stress_shading_fp64},
     [KERNEL_PENDING_AGAIN] = {"pending_again", kernel_pending_again, sizeof kernel_pending_again},
 };
 

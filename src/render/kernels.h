@@ -12,6 +12,7 @@ enum kernel_name {
     KERNEL_STRESS_BOX,
     KERNEL_STRESS_LEAVE,
     KERNEL_STRESS_NUMBERS,
+    KERNEL_STRESS_SHADING,
     // These need a device with doubles.
     KERNEL_RENDER_FP64,
     KERNEL_TRACE_FP64,
@@ -21,6 +22,7 @@ enum kernel_name {
     KERNEL_STRESS_BOX_FP64,
     KERNEL_STRESS_LEAVE_FP64,
     KERNEL_STRESS_NUMBERS_FP64,
+    KERNEL_STRESS_SHADING_FP64,
 };
 
 struct kernel_specialization {

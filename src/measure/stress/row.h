@@ -88,6 +88,23 @@ bool numbers_last_pixel(struct stress *s);
 bool numbers_disk(struct stress *s);
 bool numbers_lens(struct stress *s);
 
+// Shading (shading.c) and glass (glass.c).
+bool shading_frames(struct stress *s);
+bool shading_mirrors(struct stress *s);
+bool shading_facets(struct stress *s);
+bool shading_grazing(struct stress *s);
+bool shading_lobes(struct stress *s);
+bool glass_near_critical(struct stress *s);
+bool glass_critical(struct stress *s);
+bool glass_small_sines(struct stress *s);
+bool glass_no_change(struct stress *s);
+bool glass_least_change(struct stress *s);
+bool glass_grazing_in(struct stress *s);
+bool glass_total_reflection(struct stress *s);
+bool glass_grazing_out(struct stress *s);
+bool glass_round_trips(struct stress *s);
+bool glass_what_is_left(struct stress *s);
+
 // Samples and pixels (film.c).
 bool film_many_ones(struct stress *s);
 bool film_tenths(struct stress *s);

@@ -1,7 +1,7 @@
 // The numerically hard cases, each accuracy tier against exact arithmetic: what `gnomon stress` runs.
 //
 // A row is one case: a construction with its numbers, or a family of them, and a right answer that does not come from the code that is
-// judged (GMP, MPFR). Rows that need an effect which does not exist yet are listed as waiting for it. The table is in cases.c.
+// judged (GMP, MPFR). Rows without a test yet, or of what does not exist, are listed as waiting. The table is in cases.c.
 #ifndef MEASURE_STRESS_STRESS_H
 #define MEASURE_STRESS_STRESS_H
 
