@@ -7,6 +7,7 @@
 #include "measure/stress/adversary.h"
 #include "measure/stress/fill.h"
 #include "measure/stress/oracle.h"
+#include "measure/stress/shading.h"
 #include "measure/stress/stress.h"
 #include "measure/stress/world.h"
 #include "oracle.h"
@@ -241,6 +242,35 @@ static void fault_is_found(void **state) {
     }
 }
 
+// For u = 0 the axis; a fourth of the answers is off by a place.
+static void straight_up(struct shading_case *out, struct random *random, uint32_t i) {
+    (void)random;
+    expect(out, 2, i % 4 == 1 ? 1 - 0x1p-24 : 1, 0);
+}
+
+static bool not_every_second(const float *in, const float *out) { return is_unit(out, 0) && in[1] < 0.5f; }
+
+static void turned(struct shading_case *out, struct random *random, uint32_t i) {
+    straight_up(out, random, 0);
+    out->in[1] = i % 2 ? 0.75f : 0.25f;
+}
+
+// The control for the functions of shading: an answer that is wrong by a place, or that lacks what must hold, is found.
+static void wrong_numbers_are_found(void **state) {
+    (void)state;
+    const struct shading off = {SHADING_COSINE, EFFECT_INDIRECT, straight_up, NULL};
+    const struct shading lacks = {SHADING_COSINE, EFFECT_INDIRECT, turned, not_every_second};
+    const struct shading absent = {SHADING_COSINE, 0, turned, NULL}; // compiled out: zeros
+    struct stress s = {.ctx = fixture_context(), .device = fixture_device(), .rays = 256, .judged = {[TIER_ROBUST] = true}};
+    struct tally *tally = &s.tally[TIER_ROBUST];
+    fixture_assert(run_shading(&s, &off));
+    assert_true(tally->rays == 128 && tally->wrong == 32);
+    fixture_assert(run_shading(&s, &lacks));
+    assert_true(tally->rays == 256 && tally->wrong == 32 + 64);
+    fixture_assert(run_shading(&s, &absent));
+    assert_true(tally->wrong == 32 + 64 + 128 && s.tally[TIER_FAST].rays == 0);
+}
+
 // Cases of which a few rays, or other random numbers, once seemed too often wrong: rays that are variants of each other go wrong together.
 static void bounds_hold_for_few_rays(void **state) {
     (void)state;
@@ -282,6 +312,7 @@ int main(void) {
         cmocka_unit_test(the_adversary_is_one),
         cmocka_unit_test(the_cases_come_out),
         cmocka_unit_test(fault_is_found),
+        cmocka_unit_test(wrong_numbers_are_found),
         cmocka_unit_test(bounds_hold_for_few_rays),
         cmocka_unit_test(no_such_case),
         cmocka_unit_test(fixture_silent),

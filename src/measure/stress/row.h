@@ -105,6 +105,20 @@ bool glass_grazing_out(struct stress *s);
 bool glass_round_trips(struct stress *s);
 bool glass_what_is_left(struct stress *s);
 
+// Directions, and places in pictures (places.c).
+bool places_picked(struct stress *s);
+bool places_small_light(struct stress *s);
+bool places_hemisphere(struct stress *s);
+bool places_near_pole(struct stress *s);
+bool places_seam(struct stress *s);
+bool places_pole(struct stress *s);
+bool places_latitudes(struct stress *s);
+bool places_below_zero(struct stress *s);
+bool places_large(struct stress *s);
+bool places_checker(struct stress *s);
+bool places_centers(struct stress *s);
+bool places_no_area(struct stress *s);
+
 // Samples and pixels (film.c).
 bool film_many_ones(struct stress *s);
 bool film_tenths(struct stress *s);
