@@ -141,10 +141,10 @@ static const struct command commands[] = {
         .arguments = "",
         .summary = "the numerically hard cases, each accuracy tier against the exact answer",
         .about = "Runs the hard cases and holds each accuracy tier against exact arithmetic (GMP, MPFR). T: rays and triangles; S: spheres; B: "
-                 "boxes and hierarchies; O: rays that leave a surface; H: shading; C: camera and sampling; X: transforms; A: accumulation and "
-                 "output; V: the exact tier's filter on the worst device that Vulkan allows; W: closed meshes. Cases of rays are varied, too: "
-                 "every number by up to 3 ulp, scaled by powers of two, axes turned, vertices rotated, in other hierarchies. Cases that need an "
-                 "effect that does not exist yet wait for it. A ray is wrong when it hits something else than it should, in the exact tier also when t, "
+                 "boxes and hierarchies; O: rays that leave a surface; H: shading; R: refraction; C: camera and sampling; X: transforms; U: textures; A: "
+                 "accumulation and output; V: the exact tier's filter on the worst device that Vulkan allows; W: closed meshes. Cases of rays are varied, too: "
+                 "every number by up to 3 ulp, scaled by powers of two, axes turned, vertices rotated, in other hierarchies. Cases without a "
+                 "test yet, or of what does not exist, wait. A ray is wrong when it hits something else than it should, in the exact tier also when t, "
                  "u or v is off by more than 1 ulp; it leaks when it passes through a closed surface. Exit code 1 when the exact tier "
                  "is wrong anywhere, or another tier more often than is known of it.",
         .examples = "  gnomon stress\n"
