@@ -398,7 +398,7 @@ static void every_scene_loads(void **state) {
     assert_true(found.gl_pathc >= 15);
     for (size_t i = 0; i < found.gl_pathc; i++) {
         struct scene scene = load_scene(found.gl_pathv[i]);
-        assert_true(scene.shape_count > 0 && scene.light_count > 0);
+        assert_true(scene.shape_count > 0 && (scene.light_count > 0 || scene.environment.width > 0));
         scene_finish(&scene);
     }
     globfree(&found);
