@@ -33,8 +33,15 @@ static bool check_size(struct context *ctx, struct device *device, const struct 
     return allocation_check(ctx, device, "buffer", params->name, params->size);
 }
 
+// Never a power of two for texel buffers: llvmpipe compiles a kernel once more when one was none before, or the other way round.
+static VkDeviceSize size_to_make(const struct buffer *buffer) {
+    const bool power_of_two = (buffer->size & (buffer->size - 1)) == 0;
+    if (buffer->kind != BUFFER_TEXELS || !power_of_two) return buffer->size;
+    return buffer->size + (buffer->size == WORD ? 2 * WORD : WORD);
+}
+
 static bool init_handle(struct buffer *out, struct context *ctx, struct device *device) {
-    const VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = out->size, .usage = usage(out->kind)};
+    const VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size_to_make(out), .usage = usage(out->kind)};
     const VkResult result = vkCreateBuffer(device->handle, &info, NULL, &out->handle);
     if (result != VK_SUCCESS) return device_fail(device, ctx, GN_LIMIT, "vkCreateBuffer", result);
     device_label(device, VK_OBJECT_TYPE_BUFFER, (uint64_t)out->handle, out->name);

@@ -17,7 +17,6 @@ struct pipeline {
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkPipeline handle;
-    bool warm;                  // has done work: the driver has compiled it
 };
 
 // The pipeline for these parameters, which have been checked: one that is there, else a new one. GN_SHADER when the driver refuses it.
