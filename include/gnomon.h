@@ -153,6 +153,7 @@ struct gn_render_params {
     enum gn_accuracy accuracy;      // [robust]
     uint32_t aovs;                  // enum gn_aov, or-ed
     const char *disable;            // effects to leave out, comma-separated names [none]
+    const char *only;               // effects to run where the scene calls for them, beside those of geometry, comma-separated names [all]
     bool no_prune;                  // run every effect, whether the scene calls for it or not
     uint32_t tile_pixels;           // pixels of one piece of device work; the picture does not depend on it [measured]
     const struct gn_host *host;
@@ -180,9 +181,41 @@ struct gn_effect {
 };
 
 // Says what gn_render would run with the same scene and parameters: fills effects[0 … *count), at most `capacity`; all there
-// are when `capacity` is 64. GN_USAGE when `disable` names no effect.
+// are when `capacity` is 64. GN_USAGE when `disable` or `only` names no effect.
 bool gn_plan(struct gn_scene *scene, const struct gn_render_params *params, struct gn_effect *effects, uint32_t capacity,
              uint32_t *count, struct gn_error *error);
+
+// What a picture takes that runs some of the effects.
+struct gn_plan_side {
+    double pipeline_ms;             // making its kernel
+    double trace_ms;                // median over the rounds
+    uint64_t rays;
+    uint64_t device_bytes;          // of its buffers and images
+};
+
+struct gn_plan_buffer {
+    char name[32];
+    uint64_t bytes, limit;          // limit: what the device lets a buffer of its kind have; 0: none of its own
+};
+
+#define GN_PLAN_EFFECTS 64          // as many as gn_plan may list
+#define GN_PLAN_BUFFERS 32
+
+struct gn_plan_cost {
+    struct gn_plan_side pruned, full;   // with the effects that the scene calls for, and with all of them
+    struct {
+        bool measured;
+        struct gn_plan_side side;
+    } without[GN_PLAN_EFFECTS];         // in gn_plan's order: without one effect of those that are on; not the ones of geometry
+    uint32_t rounds;
+    struct gn_plan_buffer buffers[GN_PLAN_BUFFERS]; // of the pruned picture
+    uint32_t buffer_count;
+};
+
+// Measures what the effects cost that gn_plan lists: renders with them, with all, and without each, in turns. Kernels are compiled, so
+// pipeline_ms says what that takes only where the driver does not find them in a cache of its own.
+bool gn_plan_measure(struct gn_device *device, struct gn_scene *scene, const struct gn_render_params *params, struct gn_plan_cost *cost,
+                     struct gn_error *error);
 
 // Renders. `device` NULL renders on the CPU in fp64 (the reference), with the same sample positions and random numbers.
 // NULL and *error (GN_USAGE, GN_SHADER, GN_DEVICE_LOST, GN_LIMIT, GN_CANCELLED) on failure.

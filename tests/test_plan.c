@@ -7,6 +7,12 @@
 #define TRIANGLE "{\"type\": \"triangle\", \"vertices\": [[-1,-1,-3.5],[1,1,-3],[0.75,-1,-2.5]], \"material\": \"m\"}"
 #define LIGHT(position, intensity) "{\"type\": \"point\", \"position\": " position ", \"intensity\": " intensity "}"
 #define SUN LIGHT("[-10,10,4]", "[1,1,1]")
+#define PARALLEL(intensity) "{\"type\": \"directional\", \"direction\": [0,-1,0], \"intensity\": " intensity "}"
+#define CONE(intensity) "{\"type\": \"spot\", \"position\": [0,9,0], \"direction\": [0,-1,0], \"intensity\": " intensity "}"
+#define GLASS "\"model\": \"dielectric\""
+#define NO_DEPTH ", \"paths\": {\"max_depth\": 0}"
+#define INDIRECT(depth) ", \"paths\": {\"indirect\": true, \"max_depth\": " #depth "}"
+#define FOG(density) ", \"fog\": {\"density\": " density "}"
 #define MATT "\"diffuse\": [1,0,0]"
 #define SHINY "\"diffuse\": [0,0,0], \"specular\": [0,0,1]"
 #define OUTSIDE "[0,0,0]"
@@ -18,7 +24,7 @@ struct scene_case {
 };
 
 static struct scene load_case(const struct scene_case *c) {
-    char text[2048];
+    char text[4096];
     struct scene scene;
     snprintf(text, sizeof text,
              "{\"version\": 1, \"camera\": {\"position\": %s, \"look_at\": [0,0,-9]}, \"materials\": {\"m\": {%s}, \"unused\": "
@@ -59,6 +65,48 @@ static const struct scene_case cases[] = {
     {"[0,0,-2.5]", MATT, LIGHT("[0,0,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse"}, // both are inside
     {"[0,0,-2.5]", MATT, LIGHT("[0,0,-3]", "[1,1,1]") "," SUN, SPHERE, NULL, NULL, "spheres,diffuse,shadows"},
     {"[0,0,-2.5]", MATT, LIGHT("[0,1,-3]", "[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse,shadows"}, // the light is on it
+    {OUTSIDE, MATT, SUN, "{\"type\": \"mesh\", \"file\": \"n.obj\"}", NULL, NULL, "triangles,smooth_normals,diffuse,shadows"}, // bent normals
+    {OUTSIDE, MATT ", \"alpha\": 0.5", SUN, SPHERE, NULL, NULL, "spheres,diffuse,shadows,alpha"},               // its inside is seen
+    // Lights: they must shine, and on something that shows it.
+    {OUTSIDE, MATT, PARALLEL("[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse,directional"},
+    {OUTSIDE, MATT, PARALLEL("[0,0,0]"), SPHERE, NULL, NULL, "spheres"},
+    {OUTSIDE, "\"diffuse\": [0,0,0]", PARALLEL("[1,1,1]"), SPHERE, NULL, NULL, "spheres"},
+    {OUTSIDE, MATT, CONE("[1,1,1]"), SPHERE, NULL, NULL, "spheres,diffuse,spot"},
+    {OUTSIDE, MATT, CONE("[0,0,1]"), SPHERE, NULL, NULL, "spheres"},
+    {OUTSIDE, MATT ", \"emission\": [1,0,0]", "", TRIANGLE, NULL, NULL, "triangles,diffuse,emission,soft_shadows"},
+    {OUTSIDE, "\"diffuse\": [0,0,0], \"emission\": [1,0,0]", "", TRIANGLE, NULL, NULL, "triangles,emission"}, // it lights nothing
+    {OUTSIDE, MATT ", \"emission\": [0,0,0]", "", TRIANGLE, NULL, NULL, "triangles"},
+    // Materials: what is unused, or is multiplied by 0, calls for nothing.
+    {OUTSIDE, "\"model\": \"blinn_phong\", \"diffuse\": [0,0,0], \"specular\": [1,0,0]", SUN, TRIANGLE, NULL, NULL, "triangles,blinn_phong"},
+    {OUTSIDE, "\"model\": \"blinn_phong\", \"diffuse\": [0,0,0], \"specular\": [0,0,0]", SUN, TRIANGLE, NULL, NULL, "triangles"},
+    {OUTSIDE, "\"model\": \"metallic_roughness\", \"diffuse\": [1,1,1], \"metallic\": 0.5", SUN, TRIANGLE, NULL, NULL, "triangles,diffuse,ggx"},
+    {OUTSIDE, "\"model\": \"metallic_roughness\", \"diffuse\": [1,1,1], \"metallic\": 1", SUN, TRIANGLE, NULL, NULL, "triangles,ggx"},
+    {OUTSIDE, "\"model\": \"metallic_roughness\", \"diffuse\": [1,1,1]", "", TRIANGLE, NULL, NULL, "triangles"}, // no light
+    {OUTSIDE, MATT ", \"alpha\": 0.5", "", TRIANGLE, NULL, NULL, "triangles,alpha"},
+    {OUTSIDE, MATT ", \"alpha\": 1", "", TRIANGLE, NULL, NULL, "triangles"},
+    {OUTSIDE, MATT ", \"alpha\": 0.5, \"alpha_cutoff\": 0.5", "", TRIANGLE, NULL, NULL, "triangles"},
+    {OUTSIDE, MATT ", \"alpha\": 0.4, \"alpha_cutoff\": 0.5", "", TRIANGLE, NULL, NULL, "triangles,alpha"},
+    {OUTSIDE, MATT ", \"reflection\": [0,0.5,0]", "", TRIANGLE, NULL, NULL, "triangles,reflection"},
+    {OUTSIDE, MATT ", \"reflection\": [0,0,0]", "", TRIANGLE, NULL, NULL, "triangles"},
+    {OUTSIDE, "\"model\": \"mirror\"", "", TRIANGLE, NULL, NULL, "triangles,reflection"},
+    {OUTSIDE, "\"model\": \"mirror\", \"diffuse\": [0,0,0]", "", TRIANGLE, NULL, NULL, "triangles"},
+    {OUTSIDE, "\"model\": \"mirror\"", "", TRIANGLE, NO_DEPTH, NULL, "triangles"}, // paths end there
+    {OUTSIDE, GLASS, "", SPHERE, NULL, NULL, "spheres,refraction"},
+    {OUTSIDE, GLASS ", \"ior\": 1", "", SPHERE, NULL, NULL, "spheres,refraction"}, // what is behind it must still be seen
+    {OUTSIDE, GLASS ", \"absorption\": [0,1,0]", "", SPHERE, NULL, NULL, "spheres,refraction,absorption"},
+    {OUTSIDE, GLASS ", \"absorption\": [0,1,0], \"thin\": true", "", SPHERE, NULL, NULL, "spheres,refraction"},
+    {OUTSIDE, GLASS ", \"absorption\": [0,1,0]", "", SPHERE, NO_DEPTH, NULL, "spheres"},
+    // The way light goes, and is seen.
+    {OUTSIDE, MATT, "", TRIANGLE, INDIRECT(3), NULL, "triangles,diffuse,indirect"}, // the background shines
+    {OUTSIDE, MATT, "", TRIANGLE, INDIRECT(0), NULL, "triangles"},
+    {OUTSIDE, MATT, "", TRIANGLE, FOG("0.5"), NULL, "triangles,fog"},
+    {OUTSIDE, MATT, "", TRIANGLE, FOG("0"), NULL, "triangles"},
+    {OUTSIDE, MATT, LIGHT("[0,9,0]", "[0,1,0]"), TRIANGLE, FOG("0.5"), NULL, "triangles,shadows,fog"}, // of the triangle, in the fog
+    {OUTSIDE, MATT, LIGHT("[0,9,0]", "[0,1,0]"), "", FOG("0.5"), NULL, "fog"},
+    {OUTSIDE ", \"lens_radius\": 0.1", MATT, "", TRIANGLE, NULL, NULL, "triangles,depth_of_field"},
+    {OUTSIDE ", \"lens_radius\": 0", MATT, "", TRIANGLE, NULL, NULL, "triangles"},
+    {OUTSIDE ", \"motion\": {\"position\": [0,1,0]}", MATT, "", TRIANGLE, NULL, NULL, "triangles,motion_blur"},
+    {OUTSIDE ", \"motion\": {\"position\": [0,0,0]}", MATT, "", TRIANGLE, NULL, NULL, "triangles"},
     // Disabled effects, and what hangs on them.
     {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "shadows", "triangles,spheres,bvh,diffuse"},
     {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, "diffuse", "triangles,spheres,bvh"},
@@ -107,8 +155,8 @@ static void reasons_name_the_culprit(void **state) {
                                                       "no material in use sends out light",
                                                       "no light has a size",
                                                       "the background is one colour",
-                                                      "no material in use has a Blinn-Phong's specular color that a light could show",
-                                                      "no material in use is metallic-roughness",
+                                                      "no material in use has a Blinn-Phong specular color that a light could show",
+                                                      "no material in use has a metallic-roughness color that a light could show",
                                                       "no material in use has a texture",
                                                       "no material in use has a normal map",
                                                       "every material in use is opaque",
@@ -166,6 +214,31 @@ static void names_are_checked(void **state) {
     assert_string_equal(text, "triangles,s"); // cut, not overrun
 }
 
+// What only some effects leave: of those that the scene calls for, the ones that are asked for, and geometry.
+static void only_some_effects_run(void **state) {
+    (void)state;
+    static const struct scene_case c = {OUTSIDE, MATT, SUN, SPHERE "," TRIANGLE, NULL, NULL, ""};
+    static const struct {
+        const char *only, *disable, *effects;
+    } rows[] = {
+        {"", "", "triangles,spheres,bvh,diffuse,shadows"},
+        {"diffuse", "", "triangles,spheres,bvh,diffuse"},
+        {"shadows,diffuse", "", "triangles,spheres,bvh,diffuse,shadows"},
+        {"shadows,diffuse", "shadows,spheres", "triangles,bvh,diffuse"},
+        {"fog,reflection", "", "triangles,spheres,bvh"},
+    };
+    struct scene scene = load_case(&c);
+    struct plan plan;
+    char effects[256];
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        scratch_assert(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .only = rows[i].only, .disable = rows[i].disable}));
+        effect_names(plan.effects, effects, sizeof effects);
+        assert_string_equal(effects, rows[i].effects);
+    }
+    scratch_assert_fails(plan_make(&plan, scratch_context(), &scene, &(struct plan_params){.spp = 1, .only = "fogs"}), GN_USAGE, "did you mean 'fog'?");
+    scene_finish(&scene);
+}
+
 // Leaving the hierarchy out of a scene that needs it would lose hits, so it is refused.
 static void the_hierarchy_cannot_be_disabled(void **state) {
     (void)state;
@@ -183,6 +256,7 @@ int main(void) {
         cmocka_unit_test(reasons_name_the_culprit),
         cmocka_unit_test(without_pruning_everything_runs),
         cmocka_unit_test(names_are_checked),
+        cmocka_unit_test(only_some_effects_run),
         cmocka_unit_test(the_hierarchy_cannot_be_disabled),
     };
     return cmocka_run_group_tests_name("plan", tests, make_meshes, scratch_close);

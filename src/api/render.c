@@ -73,7 +73,7 @@ bool job_make(struct job *out, struct context *ctx, const struct gn_scene *scene
         return fail(ctx, GN_USAGE, "unknown layers 0x%x", out->aovs & ~(RENDERED_LAYERS | DEVICE_LAYERS));
     if (!reference && !tier_of_accuracy(&out->tier, &out->accuracy, ctx, params->accuracy)) return false;
     return plan_make(&out->plan, ctx, &scene->scene,
-                     &(struct plan_params){.spp = out->spp, .disable = params->disable, .no_prune = params->no_prune});
+                     &(struct plan_params){.spp = out->spp, .disable = params->disable, .only = params->only, .no_prune = params->no_prune});
 }
 
 // Memory is handed out before it is there, so what a picture will take is held against what the machine has; the kernel would end the

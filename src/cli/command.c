@@ -66,6 +66,7 @@ struct gn_render_params run_render_params(struct run *run) {
         .accuracy = run_accuracy(run),
         .aovs = settings->aovs,
         .disable = settings->disable,
+        .only = settings->only_effects,
         .no_prune = settings->no_prune,
         .tile_pixels = settings->tile_pixels,
         .host = &run->host,

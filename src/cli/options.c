@@ -36,7 +36,7 @@ struct option {
 
 #define AT(field) offsetof(struct settings, field)
 #define PICTURE (COMMAND_RENDER | COMMAND_VERIFY)
-#define RAYS (PICTURE | COMMAND_TRACE)
+#define RAYS (PICTURE | COMMAND_TRACE | COMMAND_PLAN)
 #define MOST_WHOLE 4294967295.0
 
 static const struct option options[] = {
@@ -58,7 +58,7 @@ static const struct option options[] = {
      "what each case shoots at each tier, about [10000]; closed meshes get ten times as many"},
     {"accuracy", 0, "TIER", CHOICE, AT(accuracy), COMMAND_STRESS, 0, 0, "robust|fast|exact|fp64",
      "judge only this tier: fast, robust, exact or fp64 [all of them]"},
-    {"seed", 0, "N", WHOLE, AT(seed), PICTURE | COMMAND_COST | COMMAND_STRESS, 0, MOST_WHOLE, NULL, "of the random numbers, 0 to 4294967295 [0]"},
+    {"seed", 0, "N", WHOLE, AT(seed), PICTURE | COMMAND_PLAN | COMMAND_COST | COMMAND_STRESS, 0, MOST_WHOLE, NULL, "of the random numbers, 0 to 4294967295 [0]"},
     {"accuracy", 0, "TIER", CHOICE, AT(accuracy), RAYS, 0, 0, "robust|fast|exact|fp64",
      "how hits are decided: fast, robust, exact or fp64 [robust]"},
     {"max-error", 0, "E", REAL, AT(max_error), COMMAND_RENDER, 1e-12, 1e12, NULL,
@@ -69,6 +69,8 @@ static const struct option options[] = {
      "on the CPU in fp64 with exact decisions instead of on a device"},
     {"disable", 0, "EFFECT", LIST, AT(disable), PICTURE | COMMAND_PLAN, 0, 0, NULL,
      "leave an effect out; may be repeated, or a comma list (gnomon plan SCENE lists them)"},
+    {"only", 0, "EFFECT", LIST, AT(only_effects), PICTURE | COMMAND_PLAN, 0, 0, NULL,
+     "of what the scene calls for run only these effects, beside those of geometry (triangles, spheres, bvh, instances); as --disable"},
     {"no-prune", 0, NULL, FLAG, AT(no_prune), PICTURE | COMMAND_PLAN, 0, 0, NULL,
      "run every effect, whether the scene calls for it or not"},
     {"aov", 0, "LAYER", SET, AT(aovs), COMMAND_RENDER, 0, 0, "depth|normal|id|error|ulp|undecided",
@@ -76,6 +78,8 @@ static const struct option options[] = {
      "stage left open); may be repeated, or a comma list. Layers of an .exr; beside a .png or .pfm: name.depth.png …"},
     {"tile-pixels", 0, "N", WHOLE, AT(tile_pixels), PICTURE, 1, MOST_WHOLE, NULL,
      "pixels of one piece of device work [measured]; the picture does not depend on it"},
+    {"measure", 0, NULL, FLAG, AT(measure), COMMAND_PLAN, 0, 0, NULL,
+     "measure on the device what each effect costs, and what pruning saves; --size and --spp say of which picture"},
     {"stats", 0, NULL, FLAG, AT(stats), COMMAND_RENDER | COMMAND_TRACE, 0, 0, NULL, "print where the time went, and what was counted"},
     {"any", 0, NULL, FLAG, AT(any), COMMAND_TRACE, 0, 0, NULL, "occlusion only: object is 0 for occluded, -1 for free"},
     {"repeat", 0, "N", WHOLE, AT(repeat), COMMAND_TRACE, 1, 1000000, NULL, "shoot the batch N times and report the median time [1]"},

@@ -28,11 +28,11 @@ struct size {
     uint32_t width, height;
 };
 
-// What the command line said; zero where it said nothing. Texts belong to argv, but for `disable`.
+// What the command line said; zero where it said nothing. Texts belong to argv, but for the lists of effects.
 struct settings {
     const char *positionals[MOST_POSITIONALS];
     int positional_count;
-    bool help, json, quiet, validate, hide_fp64, reference, no_prune, stats, any;
+    bool help, json, quiet, validate, hide_fp64, reference, no_prune, measure, stats, any;
     uint32_t verbose; // how often -v was given
     int progress;     // enum progress_mode
     uint32_t threads;
@@ -42,7 +42,7 @@ struct settings {
     uint32_t ray_count; // 0: the command's own
     int accuracy;       // enum gn_accuracy; negative: not given
     uint32_t aovs;      // enum gn_aov, or-ed
-    char disable[1024]; // comma-separated
+    char disable[1024], only_effects[1024]; // comma-separated
     double tolerance, seconds, max_error, max_time;
     double max_abs, max_flip; // negative: not given
 };

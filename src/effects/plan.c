@@ -10,6 +10,8 @@
 #include "scene/words.h"
 
 #define BECAUSE_SIZE sizeof(((struct plan *)0)->because[0])
+#define ALL_EFFECTS ((1u << EFFECT_COUNT) - 1)
+#define EFFECTS_OF_GEOMETRY (uint32_t)(EFFECT_TRIANGLES | EFFECT_SPHERES | EFFECT_BVH | EFFECT_INSTANCES)
 #define FEW_PRIMITIVES 4 // as many are tested one by one as fast as by way of boxes
 
 // What the rules look at. Shapes of a disabled kind are not there.
@@ -22,7 +24,6 @@ struct facts {
     uint64_t triangles;
     uint32_t spheres;
     uint32_t last_shape; // that is there
-    bool lit_otherwise;  // by lobes whose effects have a higher number
 };
 #define NOT_USED UINT32_MAX
 
@@ -93,6 +94,12 @@ static int64_t lit_by(const struct scene *scene, int channel) {
     return scene->paths.indirect && scene->paths.max_depth > 0 ? LIT_BY_ALL : LIT_BY_NONE;
 }
 
+static int shining_channels(const struct scene *scene) {
+    int count = 0;
+    for (int k = 0; k < 3; k++) count += lit_by(scene, k) != LIT_BY_NONE;
+    return count;
+}
+
 struct source_text { char text[32]; };
 static struct source_text source_text(int64_t source) {
     struct source_text out;
@@ -101,7 +108,11 @@ static struct source_text source_text(int64_t source) {
     return out;
 }
 
-static bool has_diffuse(const struct scene_material *m) { return m->model <= MODEL_METALLIC_ROUGHNESS; }
+// All of a metal's light is in its highlight.
+static bool has_diffuse(const struct scene_material *m) {
+    const bool metal = m->model == MODEL_METALLIC_ROUGHNESS && m->metallic == 1 && m->roughness_map.texture == NO_TEXTURE;
+    return m->model <= MODEL_METALLIC_ROUGHNESS && !metal;
+}
 static bool has_highlight(const struct scene_material *m) { return m->model == MODEL_PHONG; }
 static const float *diffuse_of(const struct scene_material *material) { return material->diffuse; }
 static const float *specular_of(const struct scene_material *material) { return material->specular; }
@@ -118,12 +129,8 @@ struct lobe {
 static bool light_meets(const struct facts *facts, const struct lobe *lobe, char *because) {
     const struct scene *scene = facts->scene;
     int64_t source[3];
-    int shining = 0;
-    for (int k = 0; k < 3; k++) {
-        source[k] = lit_by(scene, k);
-        shining += source[k] != LIT_BY_NONE;
-    }
-    if (shining == 0) return says(because, false, scene->light_count ? "no light has any intensity" : "there are no lights");
+    for (int k = 0; k < 3; k++) source[k] = lit_by(scene, k);
+    if (shining_channels(scene) == 0) return says(because, false, scene->light_count ? "no light has any intensity" : "there are no lights");
     for (uint32_t i = 0; i < scene->material_count; i++)
         for (int k = 0; k < 3; k++)
             if (facts->used_by[i] != NOT_USED && source[k] != LIT_BY_NONE && lobe->there(&scene->materials[i]) && lobe->color(&scene->materials[i])[k] > 0)
@@ -133,6 +140,12 @@ static bool light_meets(const struct facts *facts, const struct lobe *lobe, char
 }
 
 // ------------------------------------------------------------------------------------------------------------------- rules
+
+#define X(number, id, name, text) static bool rule_##id(const struct facts *facts, char *because);
+EFFECTS(X)
+#undef X
+static bool has_normal_map(const struct scene *scene, const struct scene_material *m);
+static bool is_cut_out(const struct scene *scene, const struct scene_material *m);
 
 static bool rule_TRIANGLES(const struct facts *facts, char *because) {
     for (uint32_t i = 0; i < facts->scene->shape_count; i++)
@@ -196,11 +209,29 @@ static bool sphere_shadows_itself(const struct scene *scene, const struct scene_
 }
 
 // Whether rays may come to a sphere's inside though the camera is outside, or from where the argument above does not look.
-static bool light_goes_round(const struct scene *scene) {
-    const struct scene_camera *camera = &scene->camera;
-    for (uint32_t i = 0; i < scene->material_count; i++)
-        if (scene->materials[i].model == MODEL_DIELECTRIC || scene->materials[i].alpha_mode != ALPHA_OPAQUE || any_positive(scene->materials[i].emission)) return true;
-    return scene->fog.density > 0 || camera->moves || camera->lens_radius > 0;
+static bool light_goes_round(const struct facts *facts) {
+    const struct scene_camera *camera = &facts->scene->camera;
+    for (uint32_t i = 0; i < facts->scene->material_count; i++) {
+        const struct scene_material *m = &facts->scene->materials[i];
+        if (facts->used_by[i] != NOT_USED && (m->model == MODEL_DIELECTRIC || is_cut_out(facts->scene, m) || any_positive(m->emission))) return true;
+    }
+    return camera->moves || camera->lens_radius > 0;
+}
+
+// Whether a shading normal may look to a light that the surface itself does not: then it stands in its own light.
+static bool normals_are_bent(const struct facts *facts) {
+    for (uint32_t i = 0; i < facts->scene->material_count; i++)
+        if (facts->used_by[i] != NOT_USED && has_normal_map(facts->scene, &facts->scene->materials[i])) return true;
+    return facts->effects & EFFECT_SMOOTH_NORMALS;
+}
+
+// Whether points of fog ask for light: then all that is there can stand in its way.
+static bool fog_is_lit(const struct facts *facts) { return facts->scene->fog.density > 0 && shining_channels(facts->scene) > 0; }
+
+// Whether any point asks for light. The lobes of Blinn-Phong and GGX have higher numbers.
+static bool light_is_asked(const struct facts *facts) {
+    char unused[BECAUSE_SIZE];
+    return facts->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR) || rule_BLINN(facts, unused) || rule_GGX(facts, unused) || fog_is_lit(facts);
 }
 
 static bool shape_moves(const struct scene *scene) {
@@ -209,18 +240,20 @@ static bool shape_moves(const struct scene *scene) {
     return false;
 }
 
-// A triangle alone: the way to a light starts in its plane, and meets the plane nowhere else unless it lies in it, which is no hit.
+// A triangle alone: the way to a light starts in its plane, on the side of the light, and meets the plane nowhere else unless it lies in it, which
+// is no hit. That side is the one of the shading normal only where this is the triangle's own.
 static bool rule_SHADOWS(const struct facts *facts, char *because) {
     const struct scene *scene = facts->scene;
     if (!scene->shadows) return says(because, false, "the scene switches shadows off");
-    if (scene->fog.density > 0) return says(because, true, "fog, and %" PRIu64 " primitives that shade it", facts->triangles + facts->spheres);
-    if (!(facts->effects & (EFFECT_DIFFUSE | EFFECT_SPECULAR)) && !facts->lit_otherwise)
-        return says(because, false, "nothing is lit that could lie in shadow");
+    if (!light_is_asked(facts)) return says(because, false, "nothing is lit that could lie in shadow");
+    if (facts->triangles + facts->spheres == 0) return says(because, false, "there is nothing that casts a shadow");
+    if (fog_is_lit(facts)) return says(because, true, "fog, and %" PRIu64 " primitives that shade it", facts->triangles + facts->spheres);
     const struct scene_shape *last = &scene->shapes[facts->last_shape];
     if (shape_moves(scene)) return says(because, true, "light and instances or shapes that move");
     if (facts->triangles + facts->spheres > 1) return says(because, true, "light and %" PRIu64 " primitives", facts->triangles + facts->spheres);
+    if (normals_are_bent(facts)) return says(because, true, "shape %u, whose shading normals are not its own", facts->last_shape);
     if (facts->triangles == 1) return says(because, false, "a triangle alone casts no shadow on itself");
-    if (light_goes_round(scene) || sphere_shadows_itself(scene, last)) return says(because, true, "shape %u, a sphere that is seen from inside", facts->last_shape);
+    if (light_goes_round(facts) || sphere_shadows_itself(scene, last)) return says(because, true, "shape %u, a sphere that is seen from inside", facts->last_shape);
     return says(because, false, "a sphere alone casts no shadow on the side that is lit");
 }
 
@@ -261,37 +294,47 @@ static bool rule_INSTANCES(const struct facts *facts, char *because) {
 
 // ----------------------------------------------------------------------------------------------------------------- lights
 
-static bool shines(const struct scene_light *light) { return light->intensity[0] > 0 || light->intensity[1] > 0 || light->intensity[2] > 0; }
+static bool shines(const struct scene_light *light) { return any_positive(light->intensity); }
 
+// A light that nothing asks for, or that sends out nothing, adds nothing.
 static bool light_of_type(const struct facts *facts, enum light_type type, const char *name, char *because) {
-    for (uint32_t i = 0; i < facts->scene->light_count; i++)
-        if (facts->scene->lights[i].type == type && shines(&facts->scene->lights[i])) return says(because, true, "light %u", i);
-    return says(because, false, "there are no %s lights", name);
+    uint32_t i = 0;
+    while (i < facts->scene->light_count && !(facts->scene->lights[i].type == type && shines(&facts->scene->lights[i]))) i++;
+    if (i == facts->scene->light_count) return says(because, false, "there are no %s lights", name);
+    return says(because, light_is_asked(facts), light_is_asked(facts) ? "light %u" : "light %u shines on nothing that shows it", i);
 }
 
 static bool rule_DIRECTIONAL(const struct facts *facts, char *because) { return light_of_type(facts, LIGHT_DIRECTIONAL, "directional", because); }
 static bool rule_SPOT(const struct facts *facts, char *because) { return light_of_type(facts, LIGHT_SPOT, "spot", because); }
 
 // The first material in use for which `calls` holds.
-static bool material_calls(const struct facts *facts, bool (*calls)(const struct scene_material *), const char *none, char *because) {
+static bool material_calls(const struct facts *facts, bool (*calls)(const struct scene *, const struct scene_material *), const char *none, char *because) {
     for (uint32_t i = 0; i < facts->scene->material_count; i++)
-        if (facts->used_by[i] != NOT_USED && calls(&facts->scene->materials[i]))
+        if (facts->used_by[i] != NOT_USED && calls(facts->scene, &facts->scene->materials[i]))
             return says(because, true, "material '%s' on shape %u", excerpt_word(facts->scene->materials[i].name).text, facts->used_by[i]);
     return says(because, false, "%s", none);
 }
 
-static bool emits(const struct scene_material *m) { return any_positive(m->emission); }
+static bool emits(const struct scene *scene, const struct scene_material *m) {
+    (void)scene;
+    return any_positive(m->emission);
+}
 static bool rule_EMISSION(const struct facts *facts, char *because) { return material_calls(facts, emits, "no material in use sends out light", because); }
 
+// Where nothing asks for light, paths do not go on by a sample of a surface either, so no light is weighted by how it could have been sampled.
 static bool rule_SOFT_SHADOWS(const struct facts *facts, char *because) {
     for (uint32_t i = 0; i < facts->scene->light_count; i++)
-        if (facts->scene->lights[i].type == LIGHT_AREA) return says(because, true, "light %u, which is shape %u", i, facts->scene->lights[i].shape);
+        if (facts->scene->lights[i].type == LIGHT_AREA)
+            return says(because, light_is_asked(facts), light_is_asked(facts) ? "light %u, which is shape %u" : "light %u, shape %u, shines on nothing that shows it", i,
+                        facts->scene->lights[i].shape);
     return says(because, false, "no light has a size");
 }
 
+// A sky without light is a black background; but where there is a sky, nobody sees the background's own color.
 static bool rule_ENVIRONMENT(const struct facts *facts, char *because) {
     const struct scene_environment *sky = &facts->scene->environment;
-    if (sky->width == 0 || !(sky->scale > 0)) return says(because, false, "the background is one colour");
+    if (sky->width == 0) return says(because, false, "the background is one colour");
+    if (!(sky->scale > 0) && !any_positive(facts->scene->background)) return says(because, false, "the environment is black");
     return says(because, true, "an environment of %u × %u texels", sky->width, sky->height);
 }
 
@@ -299,42 +342,85 @@ static bool rule_ENVIRONMENT(const struct facts *facts, char *because) {
 
 static bool is_blinn(const struct scene_material *m) { return m->model == MODEL_BLINN_PHONG; }
 static bool rule_BLINN(const struct facts *facts, char *because) {
-    static const struct lobe lobe = {is_blinn, specular_of, "Blinn-Phong's specular"};
+    static const struct lobe lobe = {is_blinn, specular_of, "Blinn-Phong specular"};
     return light_meets(facts, &lobe, because);
 }
 
+// Along the horizon all of them are white.
 static bool is_ggx(const struct scene_material *m) { return m->model == MODEL_METALLIC_ROUGHNESS; }
-static bool rule_GGX(const struct facts *facts, char *because) { return material_calls(facts, is_ggx, "no material in use is metallic-roughness", because); }
+static const float *white_of(const struct scene_material *m) {
+    static const float white[3] = {1, 1, 1};
+    (void)m;
+    return white;
+}
+static bool rule_GGX(const struct facts *facts, char *because) {
+    static const struct lobe lobe = {is_ggx, white_of, "metallic-roughness"};
+    return light_meets(facts, &lobe, because);
+}
 
-static bool has_texture(const struct scene_material *m) {
+static bool has_texture(const struct scene *scene, const struct scene_material *m) {
+    (void)scene;
     return m->diffuse_map.texture != NO_TEXTURE || m->roughness_map.texture != NO_TEXTURE || m->emission_map.texture != NO_TEXTURE;
 }
 static bool rule_TEXTURES(const struct facts *facts, char *because) { return material_calls(facts, has_texture, "no material in use has a texture", because); }
 
-static bool has_normal_map(const struct scene_material *m) { return m->normal_map.texture != NO_TEXTURE && m->normal_scale != 0; }
+static bool has_normal_map(const struct scene *scene, const struct scene_material *m) {
+    (void)scene;
+    return m->normal_map.texture != NO_TEXTURE;
+}
 static bool rule_NORMAL_MAPS(const struct facts *facts, char *because) {
     return material_calls(facts, has_normal_map, "no material in use has a normal map", because);
 }
 
-static bool is_cut_out(const struct scene_material *m) { return m->alpha_mode != ALPHA_OPAQUE; }
+// Whether every lookup of a map gives an alpha of 1: that is what lies between two ones, too.
+static bool map_is_opaque(const struct scene *scene, const struct scene_map *map) {
+    if (map->texture == NO_TEXTURE) return true;
+    const struct scene_texture *texture = &scene->textures[map->texture - 1];
+    for (size_t i = 0; i < (size_t)texture->width * texture->height; i++)
+        if (texture->texels[4 * i + 3] != 255) return false;
+    return true;
+}
+
+// A share of 1 is more than any random number, and a mask's alpha that reaches the cutoff is a surface.
+static bool is_cut_out(const struct scene *scene, const struct scene_material *m) {
+    if (m->alpha_mode == ALPHA_OPAQUE) return false;
+    const bool whole = m->alpha_mode == ALPHA_BLEND ? m->alpha >= 1 : m->alpha >= m->alpha_cutoff;
+    return !whole || !map_is_opaque(scene, &m->diffuse_map);
+}
 static bool rule_ALPHA(const struct facts *facts, char *because) { return material_calls(facts, is_cut_out, "every material in use is opaque", because); }
 
-static bool is_mirror(const struct scene_material *m) {
+// Mirrors and glass only say where a path goes on.
+static bool paths_end(const struct facts *facts, char *because) {
+    if (facts->scene->paths.max_depth > 0) return false;
+    says(because, false, "paths end at the first surface");
+    return true;
+}
+
+static bool is_mirror(const struct scene *scene, const struct scene_material *m) {
+    (void)scene;
     return m->model == MODEL_MIRROR ? any_positive(m->diffuse) : m->model <= MODEL_LAMBERT && any_positive(m->reflection);
 }
-static bool rule_REFLECTION(const struct facts *facts, char *because) { return material_calls(facts, is_mirror, "no material in use is a mirror", because); }
+static bool rule_REFLECTION(const struct facts *facts, char *because) {
+    return !paths_end(facts, because) && material_calls(facts, is_mirror, "no material in use is a mirror", because);
+}
 
-static bool is_glass(const struct scene_material *m) { return m->model == MODEL_DIELECTRIC; }
-static bool rule_REFRACTION(const struct facts *facts, char *because) { return material_calls(facts, is_glass, "no material in use is a dielectric", because); }
+// An index of 1 calls for refraction, too: its light goes straight on, but no light sample comes through, as through any glass.
+static bool is_glass(const struct scene *scene, const struct scene_material *m) {
+    (void)scene;
+    return m->model == MODEL_DIELECTRIC;
+}
+static bool rule_REFRACTION(const struct facts *facts, char *because) {
+    return !paths_end(facts, because) && material_calls(facts, is_glass, "no material in use is a dielectric", because);
+}
 
-static bool absorbs(const struct scene_material *m) { return is_glass(m) && !m->thin && any_positive(m->absorption); }
+static bool absorbs(const struct scene *scene, const struct scene_material *m) { return is_glass(scene, m) && !m->thin && any_positive(m->absorption); }
 static bool rule_ABSORPTION(const struct facts *facts, char *because) {
-    return material_calls(facts, absorbs, "no dielectric in use takes light away", because);
+    return !paths_end(facts, because) && material_calls(facts, absorbs, "no dielectric in use takes light away", because);
 }
 
 static bool rule_INDIRECT(const struct facts *facts, char *because) {
     if (!facts->scene->paths.indirect) return says(because, false, "the scene does not ask for indirect light");
-    return says(because, facts->scene->paths.max_depth > 0, "the scene asks for indirect light, paths of %u", facts->scene->paths.max_depth);
+    return !paths_end(facts, because) && says(because, true, "the scene asks for indirect light, paths of %u", facts->scene->paths.max_depth);
 }
 
 static bool rule_FOG(const struct facts *facts, char *because) {
@@ -363,16 +449,6 @@ void effect_names(uint32_t bits, char *text, size_t capacity) {
             used += (size_t)snprintf(text + used, capacity - used, "%s%s", used ? "," : "", effects[i].name);
 }
 
-// Highlights whose rules come later, and that need no diffuse color beside them.
-static bool is_lit_otherwise(const struct facts *facts) {
-    const struct scene *scene = facts->scene;
-    for (uint32_t i = 0; i < scene->material_count; i++) {
-        const struct scene_material *m = &scene->materials[i];
-        if (facts->used_by[i] != NOT_USED && (m->model == MODEL_METALLIC_ROUGHNESS || (m->model == MODEL_BLINN_PHONG && any_positive(m->specular)))) return true;
-    }
-    return false;
-}
-
 static bool parse_one(uint32_t *bits, struct context *ctx, const char *name, size_t length) {
     char all[512], wanted[64];
     snprintf(wanted, sizeof wanted, "%.*s", (int)(length < 60 ? length : 60), name);
@@ -384,11 +460,11 @@ static bool parse_one(uint32_t *bits, struct context *ctx, const char *name, siz
         }
         nearest_offer(&nearest, effects[i].name);
     }
-    effect_names((1u << EFFECT_COUNT) - 1, all, sizeof all);
+    effect_names(ALL_EFFECTS, all, sizeof all);
     return fail(ctx, GN_USAGE, "'%s' is no effect, expected some of: %s%s", excerpt_word(wanted).text, all, nearest_hint(&nearest).text);
 }
 
-static bool parse_disabled(uint32_t *bits, struct context *ctx, const char *list) {
+static bool parse_effects(uint32_t *bits, struct context *ctx, const char *list) {
     *bits = 0;
     for (const char *at = list; at && *at;) {
         const size_t length = strcspn(at, ",");
@@ -402,10 +478,11 @@ static bool parse_disabled(uint32_t *bits, struct context *ctx, const char *list
 
 bool plan_make(struct plan *out, struct context *ctx, const struct scene *scene, const struct plan_params *params) {
     *out = (struct plan){0};
-    uint32_t disabled;
+    uint32_t disabled, only;
     struct facts facts;
-    if (!parse_disabled(&disabled, ctx, params->disable) || !facts_init(&facts, ctx, scene, disabled, params->spp)) return false;
-    facts.lit_otherwise = is_lit_otherwise(&facts);
+    if (!parse_effects(&disabled, ctx, params->disable) || !parse_effects(&only, ctx, params->only)) return false;
+    if (params->only && *params->only) disabled |= ALL_EFFECTS & ~(only | EFFECTS_OF_GEOMETRY);
+    if (!facts_init(&facts, ctx, scene, disabled, params->spp)) return false;
     for (uint32_t i = 0; i < EFFECT_COUNT; i++) {
         bool on = effects[i].rule(&facts, out->because[i]);
         if (on && disabled & 1u << i & EFFECT_BVH) {

@@ -16,10 +16,11 @@ struct plan {
 struct plan_params {
     uint32_t spp;        // samples per pixel in force
     const char *disable; // comma-separated effect names to leave out [none]
+    const char *only;    // comma-separated effect names: of the others only those of geometry run, triangles, spheres, bvh, instances [all]
     bool no_prune;       // everything on
 };
 
-// Fails with GN_USAGE when `disable` names no effect; the message lists the names.
+// Fails with GN_USAGE when `disable` or `only` names no effect; the message lists the names.
 bool plan_make(struct plan *out, struct context *ctx, const struct scene *scene, const struct plan_params *params);
 
 // The name of effect number `effect`, e.g. "soft_shadows".

@@ -83,6 +83,18 @@ static bool make_kernel(struct pass *p) {
                               sizeof(struct render_args));
 }
 
+static struct render_place place_of(const struct kernel_binding *binding, const struct device *device) {
+    const VkPhysicalDeviceLimits *limits = &device->properties.limits;
+    if (binding->image) return (struct render_place){binding->image->name, 16ull * binding->image->width * binding->image->height, 0};
+    const uint64_t limit = binding->buffer->kind == BUFFER_TEXELS ? 16ull * limits->maxTexelBufferElements : limits->maxStorageBufferRange;
+    return (struct render_place){binding->buffer->name, binding->buffer->size, limit};
+}
+
+_Static_assert(RENDER_PLACES >= BINDING_COUNT, "all bindings have room");
+static void note_places(struct pass *p) {
+    for (size_t i = 0; i < p->binding_count; i++) p->out->places[p->out->place_count++] = place_of(&p->bindings[i], p->device);
+}
+
 static void make_pending_work(struct pass *p, const struct scene *scene, const struct bvh *bvh) {
     p->pending_work = (struct pending_work){
         .ctx = p->ctx,
@@ -301,6 +313,7 @@ static bool run_pass(struct pass *p, const struct scene *scene, const struct bvh
     start = clock_seconds();
     make_args(p, scene);
     if (!make_kernel(p)) return false;
+    note_places(p);
     make_pending_work(p, scene, bvh);
     if (!warm_up(p)) return false;
     out->pipeline_ms = clock_ms_since(start);

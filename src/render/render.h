@@ -19,6 +19,14 @@ struct render_params {
     uint32_t knobs[KNOB_COUNT];     // positions; 0 is the default
 };
 
+// A buffer or an image that a picture took on the device.
+struct render_place {
+    const char *name;
+    uint64_t bytes;
+    uint64_t limit; // what the device lets one of its kind have; 0: it has no limit of its own
+};
+#define RENDER_PLACES 32
+
 // As reference_film, plus what the device did.
 struct render_film {
     struct image color, depth, normal, id;
@@ -26,6 +34,8 @@ struct render_film {
     uint64_t rays, nonfinite_pixels, undecided_rays;
     uint64_t second_stage_rays;     // undecided rays that fp64 decided on the device; the rest took integers on the host
     double pipeline_ms, upload_ms, trace_ms;
+    struct render_place places[RENDER_PLACES];
+    uint32_t place_count;
 };
 
 bool render_picture(struct render_film *out, struct context *ctx, struct device *device, const struct scene *scene, const struct bvh *bvh,
