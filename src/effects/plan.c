@@ -24,6 +24,7 @@ struct facts {
     uint64_t triangles;
     uint32_t spheres;
     uint32_t last_shape; // that is there
+    int64_t source[3];   // what lights surfaces in a channel, as lit_by says
 };
 #define NOT_USED UINT32_MAX
 
@@ -45,28 +46,6 @@ static bool is_there(const struct facts *facts, uint32_t shape) {
 
 static void note_material(struct facts *facts, uint32_t material, uint32_t shape) {
     if (facts->used_by[material] == NOT_USED) facts->used_by[material] = shape;
-}
-
-static bool facts_init(struct facts *out, struct context *ctx, const struct scene *scene, uint32_t disabled, uint32_t spp) {
-    *out = (struct facts){.scene = scene, .disabled = disabled, .spp = spp};
-    out->used_by = array_alloc(ctx, scene->material_count, sizeof *out->used_by, "materials");
-    if (!out->used_by) return false;
-    for (uint32_t i = 0; i < scene->material_count; i++) out->used_by[i] = NOT_USED;
-    for (uint32_t i = 0; i < scene->shape_count; i++) {
-        const struct scene_shape *shape = &scene->shapes[i];
-        if (!is_there(out, i)) continue;
-        out->last_shape = i;
-        const struct scene_mesh *mesh = scene_mesh_of(scene, i);
-        if (shape->type == SHAPE_SPHERE)
-            out->spheres++;
-        else
-            out->triangles += mesh->triangle_count;
-        if (!mesh->materials || (shape->type == SHAPE_INSTANCE && shape->own_material))
-            note_material(out, shape->material, i);
-        else
-            for (uint32_t k = 0; k < mesh->triangle_count; k++) note_material(out, mesh->materials[k], i);
-    }
-    return true;
 }
 
 static bool any_positive(const float v[3]) { return v[0] > 0 || v[1] > 0 || v[2] > 0; }
@@ -94,10 +73,31 @@ static int64_t lit_by(const struct scene *scene, int channel) {
     return scene->paths.indirect && scene->paths.max_depth > 0 ? LIT_BY_ALL : LIT_BY_NONE;
 }
 
-static int shining_channels(const struct scene *scene) {
-    int count = 0;
-    for (int k = 0; k < 3; k++) count += lit_by(scene, k) != LIT_BY_NONE;
-    return count;
+static bool facts_init(struct facts *out, struct context *ctx, const struct scene *scene, uint32_t disabled, uint32_t spp) {
+    *out = (struct facts){.scene = scene, .disabled = disabled, .spp = spp};
+    for (int k = 0; k < 3; k++) out->source[k] = lit_by(scene, k);
+    out->used_by = array_alloc(ctx, scene->material_count, sizeof *out->used_by, "materials");
+    if (!out->used_by) return false;
+    for (uint32_t i = 0; i < scene->material_count; i++) out->used_by[i] = NOT_USED;
+    for (uint32_t i = 0; i < scene->shape_count; i++) {
+        const struct scene_shape *shape = &scene->shapes[i];
+        if (!is_there(out, i)) continue;
+        out->last_shape = i;
+        const struct scene_mesh *mesh = scene_mesh_of(scene, i);
+        if (shape->type == SHAPE_SPHERE)
+            out->spheres++;
+        else
+            out->triangles += mesh->triangle_count;
+        if (!mesh->materials || (shape->type == SHAPE_INSTANCE && shape->own_material))
+            note_material(out, shape->material, i);
+        else
+            for (uint32_t k = 0; k < mesh->triangle_count; k++) note_material(out, mesh->materials[k], i);
+    }
+    return true;
+}
+
+static bool is_lit(const struct facts *facts) {
+    return facts->source[0] != LIT_BY_NONE || facts->source[1] != LIT_BY_NONE || facts->source[2] != LIT_BY_NONE;
 }
 
 struct source_text { char text[32]; };
@@ -128,9 +128,8 @@ struct lobe {
 // what they add.
 static bool light_meets(const struct facts *facts, const struct lobe *lobe, char *because) {
     const struct scene *scene = facts->scene;
-    int64_t source[3];
-    for (int k = 0; k < 3; k++) source[k] = lit_by(scene, k);
-    if (shining_channels(scene) == 0) return says(because, false, scene->light_count ? "no light has any intensity" : "there are no lights");
+    const int64_t *source = facts->source;
+    if (!is_lit(facts)) return says(because, false, scene->light_count ? "no light has any intensity" : "there are no lights");
     for (uint32_t i = 0; i < scene->material_count; i++)
         for (int k = 0; k < 3; k++)
             if (facts->used_by[i] != NOT_USED && source[k] != LIT_BY_NONE && lobe->there(&scene->materials[i]) && lobe->color(&scene->materials[i])[k] > 0)
@@ -226,7 +225,7 @@ static bool normals_are_bent(const struct facts *facts) {
 }
 
 // Whether points of fog ask for light: then all that is there can stand in its way.
-static bool fog_is_lit(const struct facts *facts) { return facts->scene->fog.density > 0 && shining_channels(facts->scene) > 0; }
+static bool fog_is_lit(const struct facts *facts) { return facts->scene->fog.density > 0 && is_lit(facts); }
 
 // Whether any point asks for light. The lobes of Blinn-Phong and GGX have higher numbers.
 static bool light_is_asked(const struct facts *facts) {
