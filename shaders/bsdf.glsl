@@ -101,18 +101,12 @@ real3 bsdf_lobes(bsdf b, real3 n, real3 wo, real3 wi, real gloss, out real densi
     return cos_i > 0.0 ? sum : real3(0.0);
 }
 
-// π·f·cos for light from wi that goes to wo. All directions are unit and point away from the surface.
-real3 bsdf_eval(bsdf b, real3 n, real3 wo, real3 wi) {
-    real unused;
-    return bsdf_lobes(b, n, wo, wi, bsdf_gloss(b, n, wo, wi), unused);
-}
-
-// The density of bsdf_sample at wi, per solid angle; its integral is what is left for other than mirrors, less the samples that are
-// refused. 0 without INDIRECT.
-real bsdf_pdf(bsdf b, real3 n, real3 wo, real3 wi) {
-    real density;
-    bsdf_lobes(b, n, wo, wi, bsdf_gloss(b, n, wo, wi), density);
-    return density * (2.0 * ARC);
+// π·f·cos for light from wi that goes to wo. All directions are unit and point away from the surface. pdf: the density of bsdf_sample at wi, per solid angle; its
+// integral is what is left for other than mirrors, less the samples that are refused. 0 without INDIRECT.
+real3 bsdf_eval(bsdf b, real3 n, real3 wo, real3 wi, out real pdf) {
+    real3 value = bsdf_lobes(b, n, wo, wi, bsdf_gloss(b, n, wo, wi), pdf);
+    pdf *= 2.0 * ARC;
+    return value;
 }
 
 // A direction from one of the lobes; zero where there is none.

@@ -103,14 +103,12 @@ bool fog_scatters(ray r, real t, float u, inout vertex at) {
 real3 light_adds(path p, vertex at, light_sample ls) {
     real3 l = normalize_any(ls.way);
     real3 sent;
-    real other = 0.0;
+    real other; // density of the other way to find this light
     if (HAS_FOG && at.in_fog) {
-        real phase = fog_phase(dot(-at.v, l), fog_anisotropy());
-        sent = real3(PI * phase);
-        other = phase;
+        other = fog_phase(dot(-at.v, l), fog_anisotropy());
+        sent = real3(PI * other);
     } else {
-        sent = bsdf_eval(at.m.b, at.s.n, at.v, l);
-        if (HAS_INDIRECT && ls.pdf > 0.0) other = bsdf_pdf(at.m.b, at.s.n, at.v, l);
+        sent = bsdf_eval(at.m.b, at.s.n, at.v, l, other);
         if (ls.pdf > 0.0 && through_surface(at.s.ng, l)) sent = real3(0.0);
     }
     real3 adds = ls.radiance * sent;

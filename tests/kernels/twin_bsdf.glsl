@@ -24,8 +24,8 @@ void main() {
     real3 n = normalize_robust(given3(at + 14u)), ng = normalize_robust(given3(at + 17u));
     real3 wo = normalize_robust(given3(at + 20u)), wi = normalize_robust(given3(at + 23u)), to_wi, weight;
     real pdf;
-    put3(to, bsdf_eval(b, n, wo, wi));
-    result[to + 3u] = bsdf_pdf(b, n, wo, wi);
+    put3(to, bsdf_eval(b, n, wo, wi, pdf));
+    result[to + 3u] = pdf;
     result[to + 4u] = bsdf_sample(b, n, ng, wo, vec2(given[at + 26u], given[at + 27u]), given[at + 28u], to_wi, weight, pdf) ? 1.0 : 0.0;
     put3(to + 5u, to_wi);
     put3(to + 8u, weight);

@@ -12,5 +12,6 @@ void main() {
     phong_material m = phong_material(vec3(0.0), diffuse, specular, given[at + 6u]);
     bsdf b = bsdf_make(PHONG_MODEL, diffuse, specular, given[at + 6u], vec3(0.0), 0.0, 0.0, 1.5);
     put3(6u * i, phong_reflect(m, n, l, v, true, true));
-    put3(6u * i + 3u, bsdf_eval(b, n, v, l));
+    real pdf;
+    put3(6u * i + 3u, bsdf_eval(b, n, v, l, pdf));
 }
