@@ -29,6 +29,9 @@ struct exact {
 // Whether x may enter: finite, a multiple of 2^-233, below 2^131 in magnitude.
 bool exact_holds(double x);
 
+// A coordinate made one that may enter: what is below 2^-180, a 2^-31th of the smallest fp32 number, counts as 0.
+static inline double exact_snap(double x) { return fabs(x) < 0x1p-180 ? 0 : x; }
+
 // In all of these `out` may be one of the operands.
 void exact_set(struct exact *out, double x); // x as exact_holds says
 void exact_add(struct exact *out, const struct exact *a, const struct exact *b);

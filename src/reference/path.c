@@ -6,6 +6,7 @@
 #include "reference/dielectric.h"
 #include "reference/fog.h"
 #include "reference/material.h"
+#include "reference/vector.h"
 #include "scene/area_lights.h"
 #include "shaders/shared.h"
 
@@ -31,8 +32,7 @@ struct path {
     struct ref_media inside;
 };
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-static double length(const double v[3]) { return sqrt(dot(v, v)); }
+static double length(const double v[3]) { return sqrt(vector_dot(v, v)); }
 static bool is_black(const double c[3]) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 
 static void multiply(double a[3], const double b[3]) {
@@ -42,9 +42,6 @@ static void multiply(double a[3], const double b[3]) {
 static void scale(double a[3], double factor) {
     for (int i = 0; i < 3; i++) a[i] *= factor;
 }
-
-// A coordinate that the exact predicates accept (surface.c).
-static double snap(double x) { return fabs(x) < 0x1p-180 ? 0 : x; }
 
 static bool has(const struct path *p, uint32_t effects) { return p->world->world.effects & effects; }
 static const struct scene *scene_of(const struct path *p) { return p->world->world.scene; }
@@ -80,12 +77,12 @@ static void light_adds(double out[3], const struct path *p, const struct vertex 
     for (int i = 0; i < 3; i++) l[i] = distance > 0 ? l[i] / distance : 0;
     if (at->in_fog) {
         const double from[3] = {-at->v[0], -at->v[1], -at->v[2]};
-        other = ref_fog_phase(dot(from, l), scene_of(p)->fog.anisotropy);
+        other = ref_fog_phase(vector_dot(from, l), scene_of(p)->fog.anisotropy);
         for (int i = 0; i < 3; i++) out[i] = PI * other;
     } else {
         ref_bsdf_eval(out, &at->material.bsdf, at->surface.n, at->v, l);
         if (goes_on(p)) other = ref_bsdf_pdf(&at->material.bsdf, at->surface.n, at->v, l);
-        if (sample->pdf > 0 && dot(at->surface.ng, l) <= 0) out[0] = out[1] = out[2] = 0;
+        if (sample->pdf > 0 && vector_dot(at->surface.ng, l) <= 0) out[0] = out[1] = out[2] = 0;
     }
     multiply(out, sample->radiance);
     if (sample->pdf > 0) scale(out, (goes_on(p) ? mis_weight(sample->pdf, other) : 1) / (PI * sample->pdf));
@@ -104,7 +101,7 @@ static bool is_hole(const struct path *p, const struct ref_ray *ray, const struc
 static void pass_through(struct ref_ray *ray, struct crossing *from, const struct path *p, const struct crossing *hole) {
     const struct surface surface = surface_at(&p->world->world, ray, hole);
     for (int i = 0; i < 3; i++) {
-        if (ray->tmax < INFINITY) ray->d[i] = snap(ray->d[i] + (ray->o[i] - surface.p[i]) / ray->tmax);
+        if (ray->tmax < INFINITY) ray->d[i] = exact_snap(ray->d[i] + (ray->o[i] - surface.p[i]) / ray->tmax);
         ray->o[i] = surface.p[i];
     }
     *from = *hole;
@@ -136,7 +133,7 @@ static void ask_light(struct path *p, const struct vertex *at, uint32_t light) {
     multiply(adds, p->throughput);
     if (is_black(adds)) return;
     struct ref_ray ray = {.tmin = 0, .tmax = sample.infinite ? INFINITY : 1, .time = p->time, .target = sample.target};
-    for (int i = 0; i < 3; i++) ray.o[i] = at->surface.p[i], ray.d[i] = snap(sample.way[i]);
+    for (int i = 0; i < 3; i++) ray.o[i] = at->surface.p[i], ray.d[i] = exact_snap(sample.way[i]);
     if (has(p, EFFECT_SHADOWS) && is_shadowed(p, &ray, at->in_fog ? NULL : &at->surface.crossing)) return;
     for (int i = 0; i < 3; i++) p->out->radiance[i] += adds[i];
 }
@@ -202,7 +199,7 @@ static bool fog_scatters(struct vertex *at, const struct path *p, const struct r
     sampler_draw(u, p->draws, SAMPLER_PAIR_FOG + p->rays);
     if (!ref_fog_scatters(&distance, &p->world->fog, ray->o, direction, hit ? interval_mid(hit->t) * speed : INFINITY, u[0])) return false;
     *at = (struct vertex){.in_fog = true};
-    for (int i = 0; i < 3; i++) at->surface.p[i] = snap(ray->o[i] + distance * direction[i]), at->v[i] = -direction[i];
+    for (int i = 0; i < 3; i++) at->surface.p[i] = exact_snap(ray->o[i] + distance * direction[i]), at->v[i] = -direction[i];
     return true;
 }
 
@@ -262,7 +259,7 @@ static bool next_ray(struct ref_ray *ray, struct path *p, const struct vertex *a
     }
     if (is_black(p->throughput)) return false;
     *ray = (struct ref_ray){.tmin = 0, .tmax = INFINITY, .time = p->time};
-    for (int i = 0; i < 3; i++) ray->o[i] = at->surface.p[i], ray->d[i] = snap(sample.wi[i]);
+    for (int i = 0; i < 3; i++) ray->o[i] = at->surface.p[i], ray->d[i] = exact_snap(sample.wi[i]);
     return true;
 }
 

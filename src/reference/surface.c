@@ -3,25 +3,15 @@
 #include <string.h>
 
 #include "reference/texture.h"
+#include "reference/vector.h"
 #include "scene/instances.h"
 #include "shaders/shared.h"
 
 #define EFFECTS_WITH_UVS (EFFECT_TEXTURES | EFFECT_NORMAL_MAPS | EFFECT_ALPHA)
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-// Vectors of fp32 range: their squares neither overflow nor underflow. A zero vector stays zero.
-static void normalize(double v[3]) {
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3; i++) v[i] = length > 0 ? v[i] / length : 0;
-}
-
 static void turn(double v[3]) {
     for (int i = 0; i < 3; i++) v[i] = -v[i];
 }
-
-// A coordinate that the exact predicates accept: what is below 2^-180, a 2^-31th of the smallest fp32 number, counts as 0.
-static double snap(double x) { return fabs(x) < 0x1p-180 ? 0 : x; }
 
 // The interpolated vertex normal; false where there is none, or it has no length.
 static bool vertex_normal(double n[3], const struct ref_world *world, const struct scene_triangle *triangle, const double weight[3]) {
@@ -32,9 +22,9 @@ static bool vertex_normal(double n[3], const struct ref_world *world, const stru
         for (int k = 0; k < 3; k++) n[i] += weight[k] * normals[3 * (size_t)triangle->vertex[k] + i];
     }
     scene_place_normal(n, &world->scene->shapes[triangle->object]);
-    double length2 = dot(n, n);
+    double length2 = vector_dot(n, n);
     if (!(length2 > 0) || isinf(length2)) return false;
-    normalize(n);
+    vector_normalize(n);
     return true;
 }
 
@@ -62,7 +52,7 @@ static void triangle_surface(struct surface *out, const struct ref_world *world,
     const double a = interval_mid(weights[0]), b = interval_mid(weights[1]), weight[3] = {1 - a - b, a, b};
     for (int i = 0; i < 3; i++) {
         double e1 = (double)v[1][i] - v[0][i], e2 = (double)v[2][i] - v[0][i];
-        out->p[i] = snap(v[0][i] + (a * e1 + b * e2));
+        out->p[i] = exact_snap(v[0][i] + (a * e1 + b * e2));
     }
     struct scene_triangle triangle = scene_triangle_at(world->scene, out->crossing.number);
     triangle_normal(out->ng, v);
@@ -70,7 +60,7 @@ static void triangle_surface(struct surface *out, const struct ref_world *world,
     if (!out->front) turn(out->ng);
     if (!vertex_normal(out->n, world, &triangle, weight)) {
         for (int i = 0; i < 3; i++) out->n[i] = out->ng[i];
-    } else if (dot(out->n, out->ng) < 0) {
+    } else if (vector_dot(out->n, out->ng) < 0) {
         turn(out->n);
     }
     if (world->effects & EFFECTS_WITH_UVS) vertex_uv(out, world, &triangle, weight);
@@ -81,15 +71,15 @@ static void sphere_surface(struct surface *out, const struct ref_world *world, c
     double t = interval_mid(out->crossing.t);
     const float *center = out->crossing.center;
     for (int i = 0; i < 3; i++) out->ng[i] = t * ray->d[i] - (center[i] - ray->o[i]);
-    normalize(out->ng);
-    for (int i = 0; i < 3; i++) out->p[i] = snap(center[i] + out->crossing.radius * out->ng[i]);
+    vector_normalize(out->ng);
+    for (int i = 0; i < 3; i++) out->p[i] = exact_snap(center[i] + out->crossing.radius * out->ng[i]);
     if (world->effects & EFFECTS_WITH_UVS) {
         const struct tangent_frame frame = sphere_tangents(out->ng);
         sphere_uv(out->uv, out->ng);
         memcpy(out->du, frame.e1, sizeof out->du);
         memcpy(out->dv, frame.e2, sizeof out->dv);
     }
-    out->front = dot(out->ng, ray->d) <= 0;
+    out->front = vector_dot(out->ng, ray->d) <= 0;
     if (!out->front) turn(out->ng);
     for (int i = 0; i < 3; i++) out->n[i] = out->ng[i];
 }
@@ -97,7 +87,7 @@ static void sphere_surface(struct surface *out, const struct ref_world *world, c
 struct surface surface_at(const struct ref_world *world, const struct ref_ray *ray, const struct crossing *crossing) {
     struct surface out = {.crossing = *crossing};
     for (int i = 0; i < 3; i++) out.wo[i] = -ray->d[i];
-    normalize(out.wo);
+    vector_normalize(out.wo);
     if (crossing->kind == CROSSING_SPHERE)
         sphere_surface(&out, world, ray);
     else
